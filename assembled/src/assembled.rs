@@ -158,7 +158,7 @@ impl<T: Number, S: Solver<T>> Assembled<T, S> {
             dq[3..].copy_from_slice(p_dot.as_slice());
         }
         let velocities = lowered.scene.n_q()..lowered.scene.n_q() + lowered.scene.n_v();
-        let n_v = lowered.scene.n_v();
+        let (n_q, n_v) = (lowered.scene.n_q(), lowered.scene.n_v());
         let lambda_nu = if lowered.is_driven {
             self.with_solution(at, |solution| {
                 dy[velocities].copy_from_slice(&solution.accelerations[..n_v]);
@@ -171,7 +171,7 @@ impl<T: Number, S: Solver<T>> Assembled<T, S> {
             T::zero()
         };
         if let Some(work) = lowered.work {
-            let power = lowered.power(at, lambda_nu);
+            let power = lowered.power(at, lambda_nu, &dy[n_q..n_q + n_v]);
             dy[work] = power.non_conservative + power.drivers;
         }
         lowered.turn_rates(at, &mut dy[lowered.first_turn()..]);

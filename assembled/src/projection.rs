@@ -36,6 +36,7 @@ fn build<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, rows: &[T], work: &
             (0..3).for_each(|j| work[angular * stride + 6 * moving_body + 3 + j] = body.inertia[(i, j)]);
         }
     }
+    lowered.masses_of_rotors(at, |row, column, value| work[row * stride + column] += value);
     lowered.phi_pi(at, |row, column, value| {
         work[(n_v + row) * stride + column] = value;
         work[column * stride + n_v + row] = value;

@@ -164,6 +164,10 @@ pub struct ImportArgs {
     /// Give each joint a motor whose torque or force is an input, JOINT_motor
     #[arg(long)]
     pub(crate) motors: bool,
+    /// Give each joint that follows no other this armature: the inertia of its drive's rotor, behind the gear, in kg m2
+    /// or kg (that of the rotor times the square of the gear's ratio)
+    #[arg(long, value_name = "INERTIA", value_parser = not_negative)]
+    pub(crate) armature: Option<f64>,
     /// Make stops of the joints' limits
     #[arg(long)]
     pub(crate) limits: bool,
@@ -174,6 +178,12 @@ pub struct ImportArgs {
     /// Overwrite a model file that an earlier import has written
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+/// A number of 0 or more.
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite() && *number >= 0.0);
+    number.ok_or_else(|| "write an inertia of 0 or more, such as 0.01".to_owned())
 }
 
 /// Report error against run time, drift and stability of scenes

@@ -34,6 +34,8 @@ struct Wishes<'a> {
     root: Root,
     /// A motor with an input for each joint.
     motors: bool,
+    /// An armature for each joint.
+    armature: Option<f64>,
     /// Stops for joints with limits.
     limits: bool,
     /// Links that a force and a torque act on.
@@ -55,7 +57,8 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     write::check(&out, Known::Mark(MARK))?;
     let root = if args.floating { Root::Floating } else { Root::Fixed };
     let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let wishes = Wishes { root, motors: args.motors, limits: args.limits, wrenches: &args.wrenches };
+    let ImportArgs { motors, armature, limits, .. } = *args;
+    let wishes = Wishes { root, motors, armature, limits, wrenches: &args.wrenches };
     let (page, mut remarks) = convert(&file, &shown, &text, wishes).map_err(Failure::Usage)?;
     let model = gyro_model::read(&out.display().to_string(), &page).map_err(Failure::ModelFile)?;
     write::write(&out, &page, Known::Mark(MARK))?;

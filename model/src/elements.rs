@@ -19,7 +19,7 @@ pub enum CoordinateUse {
     None,
     /// Their rates, by friction and dampers, or that forces act along them.
     Rate,
-    /// Where they are, by springs and stops.
+    /// Where they are, by springs and stops, or that an armature turns with them.
     Value,
     /// That they are what a coupler or a driver says.
     Prescribed,

@@ -163,6 +163,9 @@ pub struct Joint {
     pub second: JointEnd,
     /// Viscous friction: torque on the second body is `-friction` times the relative rate (N·m·s/rad). Zero if absent.
     pub friction: Number,
+    /// Inertia that turns, or slides, with the joint's one coordinate alone, as a rotor behind a gear does: its kinetic
+    /// energy is half of it times the square of the rate (kg·m² or kg). Zero if absent.
+    pub armature: Number,
     /// Start of the joint's coordinate, as far as the model file gives one.
     pub start: JointStartSpec,
     /// Screw: advance along the axis per radian, m/rad. Zero otherwise.

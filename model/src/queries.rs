@@ -47,6 +47,11 @@ impl JointKind {
         }
     }
 
+    /// Whether the joint's one coordinate is its one freedom: then it can have an armature.
+    pub fn turns_one_rotor(self) -> bool {
+        self.coordinates().len() == 1 && self.n_free() == 1
+    }
+
     /// Number of relative motions that the joint leaves free.
     pub fn n_free(self) -> usize {
         6 - self.row_units().len()
@@ -204,8 +209,10 @@ impl Model {
         let prescribed = couplers.chain(self.drivers.iter().map(|driver| driver.coordinate));
         let uses = forces.chain(prescribed.map(|on| (on, CoordinateUse::Prescribed)));
         let of_joint = uses.filter(|(on, _)| on.joint == joint).map(|(_, of)| of);
-        let has_friction = !self.joints[joint].friction.is_zero();
-        of_joint.chain(has_friction.then_some(CoordinateUse::Rate)).max().unwrap_or_default()
+        let joint = &self.joints[joint];
+        let own = [(&joint.friction, CoordinateUse::Rate), (&joint.armature, CoordinateUse::Value)];
+        let own = own.into_iter().filter(|(number, _)| !number.is_zero()).map(|(_, of)| of);
+        of_joint.chain(own).max().unwrap_or_default()
     }
 
     fn coordinate_unit(&self, coordinate: JointCoordinate) -> RowUnit {

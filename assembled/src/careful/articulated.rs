@@ -80,7 +80,8 @@ pub(crate) fn accelerations<T: Number>(
     let Space { nodes, driven, .. } = space;
     for link in links.iter().rev() {
         if let Hold::Joint(hinge) = &link.hold {
-            fold(&lowered.scene.joints[hinge.joint], hinge, link.moving_body, nodes, driven);
+            let joint = (&lowered.scene.joints[hinge.joint], lowered.armature(hinge.joint));
+            fold(joint, hinge, link.moving_body, nodes, driven);
         }
     }
     for link in links {
@@ -122,7 +123,7 @@ fn place<T: Number>(lowered: &Lowered<T>, y: &[T], moving_body: usize, force: &[
 
 /// Folds a child into its parent: `θ̈` is eliminated, and the rest loads the parent.
 fn fold<T: Number>(
-    joint: &Joint<T>,
+    (joint, armature): (&Joint<T>, T),
     hinge: &Hinge,
     child: usize,
     nodes: &mut [Node<T>],
@@ -146,7 +147,16 @@ fn fold<T: Number>(
         Bearing::Fixed => MotionSubspace::None,
         Bearing::Spherical => MotionSubspace::all(&inertia, &force),
         // Both dot-1 rows have the second body's axis in their null space.
-        Bearing::Revolute => MotionSubspace::about(j.a * joint.second.h, &inertia, &force),
+        Bearing::Revolute => {
+            let axis = j.a * joint.second.h;
+            // What a carrier accelerates by that has no coordinates is among the applied forces already.
+            let carrier = match parent_end.place {
+                Place::Driven(index) => driven[index].a * driven[index].w_dot,
+                Place::Ground(_) | Place::Slot(_) => Vector3::zeros(),
+            };
+            let held = armature * axis.dot(&(bias.angular + carrier));
+            MotionSubspace::about(axis, (&inertia, armature), (&force, held))
+        }
     };
     nodes[child].follower = Follower { parent_arm, child_arm, bias, subspace };
     if let Some(parent) = hinge.loads {

@@ -34,13 +34,18 @@ impl<T: Number> Attitude<T> {
 }
 
 impl<T: Number> MotionSubspace<T> {
-    /// Solves `inertia (a + axis θ̈) = force` along the axis, which has no linear part.
-    pub(crate) fn about(axis: Vector3<T>, inertia: &Inertia<T>, force: &Spatial<T>) -> Self {
+    /// Solves `inertia (a + axis θ̈) = force` along the axis, which has no linear part, an armature taking its share of
+    /// θ̈ and `held` of the force.
+    pub(crate) fn about(
+        axis: Vector3<T>,
+        (inertia, armature): (&Inertia<T>, T),
+        (force, held): (&Spatial<T>, T),
+    ) -> Self {
         let (linear, angular) = (inertia.coupling * axis, inertia.angular * axis);
-        let own = axis.dot(&angular);
+        let own = axis.dot(&angular) + armature;
         let reciprocal = T::one() / own;
         let load = Spatial { linear: linear * reciprocal, angular: angular * reciprocal };
-        Self::Axis { axis, own, drive: axis.dot(&force.angular) * reciprocal, load }
+        Self::Axis { axis, own, drive: (axis.dot(&force.angular) - held) * reciprocal, load }
     }
 
     /// The same for all three rotations.

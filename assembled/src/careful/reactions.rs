@@ -25,6 +25,14 @@ pub(crate) fn multipliers<T: Number>(
         node.applied.linear -= Vector3::new(*x, *y, *z) * body.mass;
         node.applied.angular -= node.attitude.a * (body.inertia * Vector3::new(*u, *v, *w));
     }
+    lowered.taken_by_rotors(at, accelerations, |place, taken| {
+        let (node, k) = (&mut space.nodes[place / 6], place % 6);
+        if k < 3 {
+            node.applied.linear[k] -= taken;
+        } else {
+            node.applied.angular -= node.attitude.a.column(k - 3) * taken;
+        }
+    });
     for link in links.iter().rev() {
         let unbalanced = space.nodes[link.moving_body].applied;
         match &link.hold {

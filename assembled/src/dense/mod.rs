@@ -100,6 +100,7 @@ fn matrix<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> DMatrix<T> {
         (at..at + 3).for_each(|k| matrix[(k, k)] = body.mass);
         matrix.fixed_view_mut::<3, 3>(at + 3, at + 3).copy_from(&body.inertia);
     }
+    lowered.masses_of_rotors(at, |row, column, value| matrix[(row, column)] += value);
     lowered.phi_pi(at, |row, column, value| {
         matrix[(n_v + row, column)] = value;
         matrix[(column, n_v + row)] = value;

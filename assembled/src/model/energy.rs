@@ -34,12 +34,16 @@ impl<T: Number> Lowered<T> {
                 energy.potential += law.potential(&self.scene.inputs, || path.value(&self.scene, at));
             }
         }
+        for rotor in &self.rotors {
+            energy.kinetic += rotor.energy(&self.scene, at);
+        }
         energy
     }
 
-    /// The power of all forces and drivers, given `λᵀν`.
-    pub(crate) fn power(&self, at: Moment<'_, T>, lambda_nu: T) -> Power<T> {
-        let mut power = Power { non_conservative: T::zero(), drivers: -lambda_nu };
+    /// The power of all forces and drivers, given `λᵀν` and the accelerations.
+    pub(crate) fn power(&self, at: Moment<'_, T>, lambda_nu: T, accelerations: &[T]) -> Power<T> {
+        let drivers = self.power_into_rotors(at, accelerations) - lambda_nu;
+        let mut power = Power { non_conservative: T::zero(), drivers };
         for element in &self.elements {
             element.exert(&self.scene, at, |place, motion, wrench| {
                 let on_body = wrench.power(motion);

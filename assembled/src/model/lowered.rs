@@ -4,6 +4,7 @@ use crate::model::forces::Element;
 use crate::model::joint::Joint;
 use crate::model::outputs::Output;
 use crate::model::place::Places;
+use crate::model::rotor::Rotor;
 use crate::model::rows::Row;
 use crate::model::scene::Scene;
 use crate::number::{Number, number};
@@ -17,6 +18,7 @@ pub struct Lowered<T: Number> {
     pub(crate) rows: Vec<Row<T>>,
     pub(crate) row_infos: Vec<RowInfo>,
     pub(crate) elements: Vec<Element<T>>,
+    pub(crate) rotors: Vec<Rotor<T>>,
     pub(crate) outputs: Vec<Output<T>>,
     pub(crate) size: T,
     /// Whether time enters the constraints.
@@ -43,6 +45,7 @@ impl<T: Number> Lowered<T> {
             rows: rows.iter().map(|row| Row::new(model, &moving_bodies, &scene.joints, row)).collect(),
             row_infos: rows.iter().map(|row| row_info(&moving_bodies, row)).collect(),
             elements: Element::all(model, &places, &scene.joints),
+            rotors: Rotor::all(model),
             outputs: model.outputs.iter().map(|output| Output::new(model, &places, output)).collect(),
             size: number(model.size()),
             is_driven: model.is_driven(),

@@ -1,6 +1,7 @@
 //! The mechanism at run time: poses, rows, forces and outputs as the textbook has them, for all forms of the solve.
 
 pub(crate) mod applied;
+pub(crate) mod armatures;
 pub(crate) mod constraints;
 pub(crate) mod course;
 pub(crate) mod energy;
@@ -18,6 +19,7 @@ pub(crate) mod path;
 pub(crate) mod place;
 pub(crate) mod primitives;
 pub(crate) mod readings;
+pub(crate) mod rotor;
 pub(crate) mod rounding;
 pub(crate) mod rows;
 pub(crate) mod scene;

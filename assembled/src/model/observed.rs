@@ -53,7 +53,7 @@ impl<T: Number> Lowered<T> {
                 (out[0], out[1]) = (energy.kinetic, energy.potential);
             }
             Quantity::Power => {
-                let power = self.power(at, solution.lambda_nu);
+                let power = self.power(at, solution.lambda_nu, solution.accelerations);
                 (out[0], out[1]) = (power.non_conservative, power.drivers);
             }
         }

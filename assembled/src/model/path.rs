@@ -119,7 +119,7 @@ impl Coordinate {
 }
 
 /// Rotation about a global direction.
-fn about<T: Number>(u: &Vector3<T>, [i, j]: &[Motion<T>; 2]) -> Grip<T> {
+pub(crate) fn about<T: Number>(u: &Vector3<T>, [i, j]: &[Motion<T>; 2]) -> Grip<T> {
     Grip {
         rate: u.dot(&(j.omega() - i.omega())),
         wrenches: [Wrench::torque(-i.a.tr_mul(u)), Wrench::torque(j.a.tr_mul(u))],
@@ -127,7 +127,7 @@ fn about<T: Number>(u: &Vector3<T>, [i, j]: &[Motion<T>; 2]) -> Grip<T> {
 }
 
 /// Displacement along a direction u' of the first body; both forces act at the second body's point.
-fn along<T: Number>(u: &Vector3<T>, joint: &Joint<T>, [i, j]: &[Motion<T>; 2]) -> Grip<T> {
+pub(crate) fn along<T: Number>(u: &Vector3<T>, joint: &Joint<T>, [i, j]: &[Motion<T>; 2]) -> Grip<T> {
     let (u, point) = (i.a * u, j.tip(&joint.second.point));
     let d = point - i.tip(&joint.first.point);
     let velocity = j.tip_velocity(&joint.second.point) - i.tip_velocity(&joint.first.point);

@@ -28,6 +28,7 @@ pub(crate) fn multipliers<T: Number>(
         let taken = std::array::from_fn(|k| if k < 3 { taken[k] * body.mass } else { turn[k - 3] });
         *force = plus(force, number(-1.0), &taken);
     }
+    lowered.taken_by_rotors(at, accelerations, |place, taken| unbalanced[place / 6][place % 6] -= taken);
     // Torques over the mechanism's size are forces.
     let weight = T::one() / (lowered.size * lowered.size);
     for limb in tree.limbs.iter().rev() {

@@ -121,7 +121,8 @@ pub(crate) fn accelerations<T: Number>(
     for (index, limb) in tree.limbs.iter().enumerate().rev() {
         let (before, node) = nodes.split_at_mut(n_roots + index);
         let parent = (limb.parent >= n_roots).then(|| &mut before[limb.parent]);
-        fold(limb, &mut node[0], parent, free);
+        let armature = limb.hinge.as_ref().map_or(T::zero(), |hinge| lowered.armature(hinge.joint));
+        fold((limb, armature), &mut node[0], parent, free);
     }
     for (moving_body, _) in &tree.held {
         out[6 * moving_body..6 * moving_body + 6].fill(number(0.0));
@@ -289,13 +290,18 @@ fn inertia<T: Number>(mass: T, c: &Vector3<T>, turning: &Matrix3<T>) -> Inertia6
 
 /// Eliminates a joint's accelerations, the child's side first, and loads the parent, if that moves, with the rest.
 #[inline]
-fn fold<T: Number>(limb: &Limb<T>, node: &mut Node<T>, parent: Option<&mut Node<T>>, free: &mut [Free<T>]) {
+fn fold<T: Number>(
+    (limb, armature): (&Limb<T>, T),
+    node: &mut Node<T>,
+    parent: Option<&mut Node<T>>,
+    free: &mut [Free<T>],
+) {
     let Some(hinge) = &limb.hinge else { return };
     let mut free = free[hinge.screws.clone()].iter_mut().rev().peekable();
     let one = T::one();
     while let Some(screw) = free.next() {
         let thrust = apply(&node.inertia, &screw.motion);
-        let reciprocal = one / dot(&screw.motion, &thrust);
+        let reciprocal = one / (dot(&screw.motion, &thrust) + armature);
         screw.drive = dot(&screw.motion, &node.force) * reciprocal;
         screw.load = thrust.map(|x| x * reciprocal);
         if free.peek().is_some() {

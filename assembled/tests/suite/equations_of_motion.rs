@@ -57,7 +57,7 @@ fn both_forms_agree_on_and_off_the_manifold() {
 fn both_forms_leave_no_residual_in_equation_17() {
     for_each_state(0.3, |what, model, dense, careful, y| {
         let phi_pi = dense_phi_pi(dense, TIME, &y);
-        let mass = mass_matrix(model);
+        let mass = mass_matrix(model, &y);
         let (mut force, mut gamma) = (dense.buffers().velocities, dense.buffers().rows);
         dense.applied_force(TIME, &y, &mut force);
         dense.gamma(TIME, &y, &mut gamma);
@@ -91,7 +91,8 @@ fn single_precision_follows_double() {
     }
 }
 
-fn mass_matrix(model: &gyro_model::Model) -> DMatrix<f64> {
+/// `diag(M, J')`, and `J b bᵀ` of armatures about the second bodies' axes.
+fn mass_matrix(model: &gyro_model::Model, y: &[f64]) -> DMatrix<f64> {
     let moving_bodies = model.coordinate_bodies();
     let mut matrix = DMatrix::zeros(6 * moving_bodies.len(), 6 * moving_bodies.len());
     for (moving_body, &body) in moving_bodies.iter().enumerate() {
@@ -100,6 +101,24 @@ fn mass_matrix(model: &gyro_model::Model) -> DMatrix<f64> {
         let inertia = nalgebra::Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         (0..3).for_each(|k| matrix[(6 * moving_body + k, 6 * moving_body + k)] = model.value(&body.mass));
         matrix.fixed_view_mut::<3, 3>(6 * moving_body + 3, 6 * moving_body + 3).copy_from(&inertia);
+    }
+    for joint in model.joints.iter().filter(|joint| !joint.armature.is_zero()) {
+        assert_eq!(joint.kind, gyro_model::JointKind::Revolute);
+        let slot = |end: &gyro_model::JointEnd| moving_bodies.iter().position(|&body| body == end.body);
+        let rotation = |slot: usize| {
+            let p = &y[7 * slot + 3..7 * slot + 7];
+            nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(p[0], p[1], p[2], p[3]))
+        };
+        let (axis, second) =
+            (nalgebra::Vector3::from(model.values(&joint.second.axis)).normalize(), slot(&joint.second));
+        let second = second.expect("armatures lead to moving bodies");
+        let mut b = DVector::zeros(matrix.nrows());
+        b.fixed_rows_mut::<3>(6 * second + 3).copy_from(&axis);
+        if let Some(first) = slot(&joint.first) {
+            let on_first = rotation(first).inverse() * (rotation(second) * axis);
+            b.fixed_rows_mut::<3>(6 * first + 3).copy_from(&-on_first);
+        }
+        matrix += &b * b.transpose() * model.value(&joint.armature);
     }
     matrix
 }

@@ -5,6 +5,7 @@
 mod support;
 
 mod allocation;
+mod armature;
 mod closed_forms;
 mod energy;
 mod equations_of_motion;

@@ -234,6 +234,9 @@ impl Page<'_> {
         if joint.damping > 0.0 && joint.kind.is_single() {
             let _ = writeln!(text, "friction = {:?}", joint.damping);
         }
+        if let Some(armature) = self.wishes.armature.filter(|_| self.is_driven(index)) {
+            let _ = writeln!(text, "armature = {armature:?}");
+        }
     }
 
     /// An end of a joint: the joint's frame in the body's.
@@ -266,11 +269,14 @@ impl Page<'_> {
         self.robot.joints[index].limit.filter(|limit| limit.lower < limit.upper)
     }
 
-    /// Joints that are given a motor: all but those that follow others.
+    /// Joints that are given a motor if that is wished: all but those that follow others.
     fn motors(&self) -> impl Iterator<Item = usize> {
-        let joint = |index: usize| &self.robot.joints[index];
-        let is_driven = move |index: &usize| joint(*index).kind.is_single() && joint(*index).mimic.is_none();
-        self.moving_joints().filter(is_driven).filter(|_| self.wishes.motors)
+        self.moving_joints().filter(|&index| self.is_driven(index)).filter(|_| self.wishes.motors)
+    }
+
+    fn is_driven(&self, index: usize) -> bool {
+        let joint = &self.robot.joints[index];
+        joint.kind.is_single() && joint.mimic.is_none()
     }
 
     fn motor(&self, text: &mut String, index: usize) {

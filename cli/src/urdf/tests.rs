@@ -2,7 +2,8 @@
 
 use super::*;
 
-const PLAIN: Wishes<'_> = Wishes { root: Root::Fixed, motors: false, limits: false, wrenches: &[] };
+const PLAIN: Wishes<'_> =
+    Wishes { root: Root::Fixed, motors: false, armature: None, limits: false, wrenches: &[] };
 const FLOATING: Wishes<'_> = Wishes { root: Root::Floating, ..PLAIN };
 
 const LINKS: &str = r#"<robot name="r">
@@ -257,6 +258,10 @@ fn motors_and_stops_are_made_on_request() {
         assert!(remarks.iter().any(|remark| remark == words), "{words} is missing in {remarks:#?}");
     }
     gyro_model::read("r.toml", &page).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let (page, _) = convert(Wishes { armature: Some(0.02), ..PLAIN });
+    let model = gyro_model::read("r.toml", &page).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let armatures: Vec<f64> = model.joints.iter().map(|joint| model.value(&joint.armature)).collect();
+    assert_eq!(armatures, [0.02, 0.0, 0.02, 0.02], "k follows j");
     // A strong drive on a light finger: the stop is as stiff as 1000 rad/s make it.
     let finger = link("f", (0.001, [1e-6; 3]), "revolute", "arm")
         .replace("0 0 0\"/>", "0 0 1\"/><limit upper=\"1\" effort=\"50\"/>");

@@ -1,5 +1,6 @@
 //! M, J', applied forces and energy: the rest of eq. (17).
 
+use crate::derive::armature::Rotor;
 use crate::derive::forces::Forces;
 use crate::derive::joint_coordinate::Load;
 use crate::derive::kinematics::Matrix;
@@ -11,10 +12,12 @@ use crate::expr::vector::{Mat3, Vec3};
 /// The terms of eq. (17) that do not come from Φ.
 #[derive(Debug)]
 pub struct Dynamics {
-    /// diag(m, m, m, J') of each moving body, by rows.
+    /// diag(m, m, m, J') of each moving body, by rows, and what armatures add.
     pub mass_matrix: Matrix,
-    /// (f, n' − w̃'J'w') of each moving body.
+    /// (f, n' − w̃'J'w') of each moving body, and what armatures take while no body accelerates.
     pub applied_force: Vec<ExprId>,
+    /// Of joints.
+    pub rotors: Vec<Rotor>,
     /// What acts on each body besides gravity and forces along joint coordinates.
     pub other_loads: Vec<Load>,
     /// ½ Σ (sᵀ m s + w'ᵀ J' w').
@@ -44,6 +47,7 @@ impl Dynamics {
         let mut dynamics = Self {
             mass_matrix: vec![vec![Graph::ZERO; 6 * n_moving_bodies]; 6 * n_moving_bodies],
             applied_force: Vec::new(),
+            rotors: Rotor::all(system),
             other_loads: forces.other_loads.clone(),
             kinetic: Graph::ZERO,
             potential: forces.potential,
@@ -54,7 +58,44 @@ impl Dynamics {
         for moving_body in 0..n_moving_bodies {
             dynamics.add_body(system, moving_body, &forces.loads[system.moving_bodies[moving_body]]);
         }
+        for rotor in dynamics.rotors.clone() {
+            dynamics.add_rotor(system, &rotor);
+        }
         dynamics
+    }
+
+    fn add_rotor(&mut self, system: &mut System, rotor: &Rotor) {
+        let n_moving_bodies = system.moving_bodies.len();
+        let along = (0..n_moving_bodies).flat_map(|moving_body| {
+            let on = rotor.on(system, moving_body);
+            on.t.into_iter().chain(on.rho)
+        });
+        let along: Vec<_> = along.collect();
+        let graph = &mut system.graph;
+        for (row, &entry) in along.iter().enumerate().filter(|(_, entry)| **entry != Graph::ZERO) {
+            let scaled = graph.mul(rotor.inertia, entry);
+            for (whole, &other) in self.mass_matrix[row].iter_mut().zip(&along) {
+                let added = graph.mul(scaled, other);
+                *whole = graph.add(*whole, added);
+            }
+            let taken = graph.mul(scaled, rotor.bias);
+            self.applied_force[row] = graph.sub(self.applied_force[row], taken);
+        }
+        let (half, square) = (graph.fraction(1, 2), graph.mul(rotor.rate, rotor.rate));
+        let twice = graph.mul(rotor.inertia, square);
+        let own = graph.mul(half, twice);
+        self.kinetic = graph.add(self.kinetic, own);
+        for (&body, load) in rotor.bodies.iter().zip(&rotor.along) {
+            if system.model.bodies[body].motion.is_some() {
+                let (pose, acceleration) = (system.poses[body], rotor.acceleration(system));
+                let graph = &mut system.graph;
+                let (pushed, turned) = (graph.dot(&load.force, &pose.s), graph.dot(&load.torque, &pose.w));
+                let speed = graph.add(pushed, turned);
+                let taken = graph.mul(rotor.inertia, acceleration);
+                let power = graph.mul(taken, speed);
+                self.power_of_driven_bodies = graph.add(self.power_of_driven_bodies, power);
+            }
+        }
     }
 
     fn add_body(&mut self, system: &mut System, moving_body: usize, load: &Load) {

@@ -65,9 +65,14 @@ pub fn value(system: &mut System, coordinate: JointCoordinate) -> ExprId {
 
 /// The coordinate's rate: of an angle from the bodies' own axes, of a displacement its derivative.
 pub fn rate(system: &mut System, coordinate: JointCoordinate) -> ExprId {
-    let joint = system.joints[coordinate.joint];
+    let (joint, kind) = (system.joints[coordinate.joint], system.model.coordinate_kind(coordinate));
+    rate_as(system, &joint, kind)
+}
+
+/// The rate of a coordinate of this kind.
+pub fn rate_as(system: &mut System, joint: &JointFrames, kind: CoordinateKind) -> ExprId {
     let (w_i, w_j) = (system.poses[joint.first.body].w, system.poses[joint.second.body].w);
-    match system.model.coordinate_kind(coordinate) {
+    match kind {
         CoordinateKind::Angle => {
             let graph = &mut system.graph;
             let (rate_i, rate_j) = (graph.dot(&joint.first.h, &w_i), graph.dot(&joint.second.h, &w_j));
@@ -79,11 +84,11 @@ pub fn rate(system: &mut System, coordinate: JointCoordinate) -> ExprId {
             system.graph.dot(&joint.first.h, &relative)
         }
         CoordinateKind::SecondAngle => {
-            let relative = relative_spin(system, &joint);
+            let relative = relative_spin(system, joint);
             system.graph.dot(&joint.second.h, &relative)
         }
         CoordinateKind::Displacement | CoordinateKind::X | CoordinateKind::Y => {
-            let value = value(system, coordinate);
+            let value = displacement(system, joint, &direction(kind, joint));
             let motion = system.motion();
             Derivative::new(&system.definitions, motion).of(&mut system.graph, value)
         }
@@ -99,13 +104,18 @@ pub fn relative_spin(system: &mut System, joint: &JointFrames) -> Vec3 {
 
 /// What a unit force along the coordinate does to the joint's first and second body.
 pub fn unit_loads(system: &mut System, coordinate: JointCoordinate) -> [Load; 2] {
-    let joint = system.joints[coordinate.joint];
+    let (joint, kind) = (system.joints[coordinate.joint], system.model.coordinate_kind(coordinate));
+    unit_loads_as(system, &joint, kind)
+}
+
+/// The same along a coordinate of this kind.
+pub fn unit_loads_as(system: &mut System, joint: &JointFrames, kind: CoordinateKind) -> [Load; 2] {
     let (h_i, h_j, relative) = (joint.first.h, joint.second.h, joint.relative);
     let torques = |system: &mut System, on_first: Vec3, on_second: Vec3| {
         let on_first = system.graph.neg_vec(&on_first);
         [on_first, on_second].map(|torque| Load { force: ZERO3, torque })
     };
-    match system.model.coordinate_kind(coordinate) {
+    match kind {
         CoordinateKind::Angle => torques(system, h_i, h_j),
         CoordinateKind::FirstAngle => {
             let on_second = system.graph.transposed_vec(&relative, &h_i);
@@ -115,7 +125,7 @@ pub fn unit_loads(system: &mut System, coordinate: JointCoordinate) -> [Load; 2]
             let on_first = system.graph.mat_vec(&relative, &h_j);
             torques(system, on_first, h_j)
         }
-        kind => along(system, &joint, &direction(kind, &joint)),
+        kind => along(system, joint, &direction(kind, joint)),
     }
 }
 

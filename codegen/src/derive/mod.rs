@@ -1,5 +1,6 @@
 //! From the model to Φ and its derivatives, masses, forces and outputs: the textbook, symbol by symbol.
 
+pub mod armature;
 pub mod constraints;
 pub mod dynamics;
 pub mod forces;

@@ -88,11 +88,15 @@ impl ArticulatedInertia {
         SpatialVector { t: self.coupling.map(|row| row[k]), rho: self.angular[k] }
     }
 
-    /// What is left once a component of the twist is free: `I − u uᵀ / d`.
-    pub fn without(&self, graph: &mut Graph, component: usize) -> (Self, Released) {
+    /// What is left once a component of the twist is free, an armature resisting it besides: `I − u uᵀ / (d + J)`.
+    pub fn without(&self, graph: &mut Graph, component: usize, armature: ExprId) -> (Self, Released) {
         let mut column = self.column(graph, component);
-        let inverse = graph.recip(column.component(component));
-        *column.component_mut(component) = Graph::ZERO;
+        let resisting = graph.add(column.component(component), armature);
+        let inverse = graph.recip(resisting);
+        let is_free = armature == Graph::ZERO;
+        if is_free {
+            *column.component_mut(component) = Graph::ZERO;
+        }
         let factor = column.scaled(graph, inverse);
         let mut less = |m: &Mat3, u: &[ExprId; 3], v: &[ExprId; 3]| {
             std::array::from_fn(|row| {
@@ -108,7 +112,9 @@ impl ArticulatedInertia {
             coupling: less(&self.coupling, &factor.t, &column.rho),
             angular: symmetric(&less(&self.angular, &factor.rho, &column.rho)),
         };
-        if component < 3 {
+        if !is_free {
+            // The component is resisted still.
+        } else if component < 3 {
             (0..3).for_each(|other| {
                 (rest.linear[component][other], rest.linear[other][component]) = (Graph::ZERO, Graph::ZERO);
             });
@@ -121,7 +127,7 @@ impl ArticulatedInertia {
                 rest.coupling[other][k] = Graph::ZERO;
             });
         }
-        (rest, Released { component, inverse, factor })
+        (rest, Released { component, is_free, inverse, factor })
     }
 }
 
@@ -129,6 +135,8 @@ impl ArticulatedInertia {
 #[derive(Clone, Copy, Debug)]
 pub struct Released {
     component: usize,
+    /// Whether nothing resists it once it has yielded.
+    is_free: bool,
     /// Of what resists it.
     inverse: ExprId,
     /// How much it yields to an acceleration of each other component.
@@ -142,7 +150,9 @@ impl Released {
         let driving = graph.add(own, along);
         let taken = self.factor.scaled(graph, driving).negated(graph);
         *load = load.plus(graph, &taken);
-        *load.component_mut(self.component) = graph.neg(along);
+        if self.is_free {
+            *load.component_mut(self.component) = graph.neg(along);
+        }
         graph.mul(driving, self.inverse)
     }
 
@@ -150,9 +160,15 @@ impl Released {
     /// added.
     pub fn release(&self, graph: &mut Graph, motion: &mut SpatialVector, share: ExprId) -> ExprId {
         let own = motion.component(self.component);
-        *motion.component_mut(self.component) = Graph::ZERO;
+        if self.is_free {
+            *motion.component_mut(self.component) = Graph::ZERO;
+        }
         let yielded = self.factor.dot(graph, motion);
         let all = graph.sub(share, yielded);
+        if !self.is_free {
+            *motion.component_mut(self.component) = graph.add(own, all);
+            return all;
+        }
         *motion.component_mut(self.component) = all;
         graph.sub(all, own)
     }

@@ -53,6 +53,8 @@ pub(super) struct Segment {
     load_at_rest: SpatialVector,
     /// The force along each free component.
     pub along: Vec<ExprId>,
+    /// What resists each besides the inertia of bodies.
+    pub armature: Vec<ExprId>,
 }
 
 /// Where the accelerations that are found start.
@@ -83,8 +85,9 @@ impl AxisTree {
             };
             let applied = load(system, &station, &frame, loads);
             let is_unknown = |&(_, rate): &(usize, usize)| !embedding.rates[rate].columns.is_empty();
-            let free: Vec<_> = free(&station.freedom).into_iter().filter(is_unknown).collect();
+            let free: Vec<_> = station.freedom.components().into_iter().filter(is_unknown).collect();
             let along = along(system, &station, &free, &coordinates.along);
+            let armature = free.iter().map(|&(_, rate)| coordinates.armature[rate]).collect();
             let graph = &mut system.graph;
             let motion = moving(graph, &station, (&frame, &biases), from);
             let turning = Motion::new(graph, ZERO3, from.rho, ZERO3);
@@ -106,6 +109,7 @@ impl AxisTree {
                 forced,
                 load_at_rest,
                 along,
+                armature,
             });
         }
         Some(Self { segments, embedding: embedding.clone() })
@@ -128,8 +132,9 @@ impl AxisTree {
         for (index, segment) in self.segments.iter().enumerate().rev() {
             let (mut inertia, mut load) = (inertias[index], loads[index]);
             let mut steps = Vec::new();
-            for (&(component, _), &along) in segment.free.iter().zip(&segment.along) {
-                let (rest, step) = inertia.without(graph, component);
+            let resisting = segment.along.iter().zip(&segment.armature);
+            for (&(component, _), (&along, &armature)) in segment.free.iter().zip(resisting) {
+                let (rest, step) = inertia.without(graph, component, armature);
                 steps.push((step, step.yield_to(graph, &mut load, along)));
                 inertia = rest;
             }
@@ -264,6 +269,7 @@ impl AxisTree {
                 for &(other, other_rate) in &segment.free[..=k] {
                     self.couple(graph, &mut matrix, (rate, other_rate), wrench.component(other));
                 }
+                self.couple(graph, &mut matrix, (rate, rate), segment.armature[k]);
                 let mut at = index;
                 while let Some(parent) = self.segments[at].station.parent {
                     wrench = carried(graph, &self.segments[at].frame, wrench);
@@ -391,19 +397,6 @@ fn load(system: &mut System, station: &Station, frame: &Frame, loads: &[Load]) -
     let moment = graph.cross(&from_origin, &force);
     let torque = graph.add_vec(&load.torque, &moment);
     SpatialVector { t: graph.mat_vec(&frame.axes, &force), rho: graph.mat_vec(&frame.axes, &torque) }
-}
-
-fn free(freedom: &Freedom) -> Vec<(usize, usize)> {
-    match *freedom {
-        Freedom::Rigid => Vec::new(),
-        Freedom::Turn { place, .. } => vec![(5, place.u)],
-        Freedom::Slide(place) => vec![(2, place.u)],
-        Freedom::Ball(place) => (0..3).map(|k| (3 + k, place.u + k)).collect(),
-        Freedom::Whole { position, orientation } => {
-            let translations = (0..3).map(|k| (k, position.u + k));
-            translations.chain((0..3).map(|k| (3 + k, orientation.u + k))).collect()
-        }
-    }
 }
 
 /// The force along each free component.

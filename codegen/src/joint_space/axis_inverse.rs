@@ -22,8 +22,26 @@ impl AxisTree {
             segment.applied.plus(graph, &taken)
         });
         let loads = loads.collect();
-        let left = self.forces(graph, loads);
+        let mut left = self.forces(graph, loads);
+        for (taken, left) in self.taken_by_armatures(graph, unknowns).into_iter().zip(&mut left) {
+            *left = graph.sub(*left, taken);
+        }
         self.to_global(graph, &left).into_iter().map(|force| graph.neg(force)).collect()
+    }
+
+    /// The force along each unknown that the armatures take.
+    fn taken_by_armatures(&self, graph: &mut Graph, unknowns: &[ExprId]) -> Vec<ExprId> {
+        let mut taken = vec![Graph::ZERO; self.embedding.rates.len()];
+        for segment in &self.segments {
+            for (&(_, rate), &armature) in segment.free.iter().zip(&segment.armature) {
+                for &(unknown, factor) in &self.embedding.rates[rate].columns {
+                    let scaled = graph.mul(armature, factor);
+                    let part = graph.mul(scaled, unknowns[unknown]);
+                    taken[rate] = graph.add(taken[rate], part);
+                }
+            }
+        }
+        self.embedding.projected(graph, &taken)
     }
 
     /// How each station moves if the unknowns are these, gravity being an acceleration of the ground.

@@ -37,8 +37,8 @@ pub struct Candidates {
 
 impl Candidates {
     pub fn solve(system: &mut System, coordinates: &Coordinates) -> Self {
-        let Coordinates { embedding, links_of_dynamics: links, unit, along, .. } = coordinates;
-        let loads = &coordinates.loads;
+        let Coordinates { embedding, links_of_dynamics: links, unit, along, armature, .. } = coordinates;
+        let (loads, along) = (&coordinates.loads, (along.as_slice(), armature.as_slice()));
         let rows = coordinates.remaining_rows(&mut system.graph);
         let spins = dynamics::spins(system, links);
         let balance = JointDynamics::new(system, links, &spins, loads, along, (embedding, rows.clone()));
@@ -233,6 +233,7 @@ mod tests {
     fn couplers_and_drivers_are_put_into_the_mass_matrix_and_loops_stay_as_they_are() {
         for (page, n_forms) in [
             (include_str!("../../../tests/models/gear.toml"), 1),
+            (include_str!("../../../tests/models/armature.toml"), 1),
             (include_str!("../../../tests/models/differential.toml"), 1),
             (include_str!("../../../tests/models/driven-shaft.toml"), 3),
             (include_str!("../../../models/four-bar.toml"), 0),
@@ -288,10 +289,12 @@ mod tests {
             };
             let (on_parent, own) = (end(parent), end(body));
             let (first, second) = if reversed { (own, on_parent) } else { (on_parent, own) };
+            let has_armature = matches!(kind, "revolute" | "prismatic") && body % 2 == 1;
+            let armature = if has_armature { "armature = 0.3\n" } else { "" };
             text += &format!(
                 "[[body]]\nname = \"b{body}\"\nmass = {mass}\n\
                  inertia = {{ xx = 0.5, yy = 0.6, zz = 0.{mass}5, xy = 0.01, xz = -0.02, yz = 0.03 }}\n\
-                 [[joint]]\nname = \"j{body}\"\nkind = \"{kind}\"\nfirst = {first}\nsecond = {second}\n"
+                 [[joint]]\nname = \"j{body}\"\nkind = \"{kind}\"\n{armature}first = {first}\nsecond = {second}\n"
             );
         }
         text

@@ -47,8 +47,10 @@ pub struct Coordinates {
     pub by_rates: Embedding,
     /// How all rates of the tree accelerate.
     pub embedding: Embedding,
-    /// The force along each rate of the tree.
+    /// The force along each rate of the tree, and what armatures take if all unknowns are zero.
     pub along: Vec<ExprId>,
+    /// The armature along each rate of the tree.
+    pub armature: Vec<ExprId>,
     /// What else acts on each body of the model.
     pub loads: Vec<Load>,
     /// Sets of atoms of which the squares sum to one.
@@ -97,7 +99,12 @@ impl Coordinates {
         let loads = forces::loads(system, (&layout, &angles), &textbook.dynamics.other_loads);
         let invariant = invariant_angles(system, &layout, &links, &loads);
         let links_of_dynamics = links_of(system, &layout, &|x| !invariant.contains(&x));
-        let along = forces::along(system, &layout, &angles);
+        let mut along = forces::along(system, &layout, &angles);
+        let armature = forces::armature(system, &layout);
+        for ((along, &inertia), motion) in along.iter_mut().zip(&armature).zip(&embedding.rates) {
+            let taken = system.graph.mul(inertia, motion.bias);
+            *along = system.graph.sub(*along, taken);
+        }
         Self {
             layout,
             links,
@@ -113,6 +120,7 @@ impl Coordinates {
             loops,
             embedding,
             along,
+            armature,
             loads,
             unit,
         }

@@ -6,6 +6,7 @@
 
 use super::embedding::Embedding;
 use super::link_kinematics::{Bias, LinkKinematics};
+use super::lower_triangle::{couple, resistance};
 use crate::derive::dynamics::gyroscopic_torque;
 use crate::derive::joint_coordinate::Load;
 use crate::derive::outputs::time_derivative;
@@ -18,7 +19,7 @@ use crate::expr::vector::{UNIT3, Vec3, ZERO3};
 use crate::simplify::normal_form::{Reduction, normal_form_of};
 use crate::solve::aggregate_joints::AggregateTree;
 use crate::solve::articulated_body::{Arm, Basis, EliminatedTree, Excitation, Inertia};
-use crate::solve::gram_schmidt::GramSchmidtTree;
+use crate::solve::gram_schmidt::{Armature, GramSchmidtTree};
 use crate::solve::ldl::Elimination;
 use crate::solve::motion_subspace::{MotionSubspace, Parent};
 use std::collections::BTreeMap;
@@ -42,18 +43,21 @@ pub struct JointDynamics {
     /// In the bodies' own frames.
     excitation: Excitation,
     embedding: Embedding,
+    /// With the places of unknowns.
+    armatures: Vec<Armature>,
     /// Rows that the unknowns must meet besides, `J z = γ`.
     rows: Vec<(Vec<ExprId>, ExprId)>,
 }
 
 impl JointDynamics {
-    /// `loads` act on each body of the model besides gravity; `along` is the force along each rate of the tree.
+    /// `loads` act on each body of the model besides gravity; `along` is the force along each rate of the tree,
+    /// `armature` the inertia that turns with it.
     pub fn new(
         system: &mut System,
         links: &[LinkKinematics],
         spins: &[Vec3],
         loads: &[Load],
-        along: &[ExprId],
+        (along, armature): (&[ExprId], &[ExprId]),
         (embedding, rows): (&Embedding, Vec<(Vec<ExprId>, ExprId)>),
     ) -> Self {
         let gravity = system.numbers(&system.model.gravity);
@@ -92,7 +96,8 @@ impl JointDynamics {
         excitation.bias = (0..spins.len())
             .map(|moving_body| inertial(system, moving_body, &spins[moving_body], loads))
             .collect();
-        Self { unknowns, places, subspaces, excitation, embedding: embedding.clone(), rows }
+        let armatures = embedding.armatures(armature);
+        Self { unknowns, places, subspaces, excitation, embedding: embedding.clone(), armatures, rows }
     }
 
     /// The unknowns as they occur, root first.
@@ -108,7 +113,11 @@ impl JointDynamics {
     /// The accelerations of all rates of the tree by the Gram–Schmidt form.
     pub fn by_gram_schmidt(&self, system: &mut System) -> Vec<ExprId> {
         let (subspaces, unknowns) = (self.subspaces.clone(), self.unknowns.clone());
-        let tree = GramSchmidtTree::of_unknowns(system, subspaces, unknowns, Basis::Mixed);
+        let number = |&(place, factor): &(usize, ExprId)| Some((self.number(place)?, factor));
+        let armatures = self.armatures.iter();
+        let armatures = armatures.map(|(inertia, by)| (*inertia, by.iter().filter_map(number).collect()));
+        let armatures: Vec<_> = armatures.collect();
+        let tree = GramSchmidtTree::of_unknowns(system, subspaces, (unknowns, &armatures), Basis::Mixed);
         let response = tree.respond(&mut system.graph, &self.excitation);
         let found = self.scattered(&response.rates);
         self.embedding.rates_of_rates(&mut system.graph, &found)
@@ -149,17 +158,31 @@ impl JointDynamics {
     }
 
     fn eliminated(&self, system: &mut System) -> Eliminated {
-        let subspaces = self.subspaces.clone();
-        if self.shares_unknowns() {
-            Eliminated::Shared(AggregateTree::new(
-                system,
-                subspaces,
-                self.unknowns.clone(),
-                self.places.len(),
-            ))
+        let mut subspaces = self.subspaces.clone();
+        let resisting = resistance(&mut system.graph, &self.armatures);
+        if self.shares_unknowns() || resisting.keys().any(|(row, column)| row != column) {
+            let number = |place: usize| self.number(place).expect("the armature turns with a joint");
+            let resisting = resisting.into_iter().map(|((row, column), entry)| {
+                let (a, b) = (number(row), number(column));
+                ((a.max(b), a.min(b)), entry)
+            });
+            let armature = (self.places.len(), resisting.collect());
+            Eliminated::Shared(AggregateTree::new(system, subspaces, self.unknowns.clone(), armature))
         } else {
+            for (subspace, unknowns) in subspaces.iter_mut().zip(&self.unknowns) {
+                let of = |&unknown: &usize| {
+                    let place = self.places[unknown];
+                    resisting.get(&(place, place)).copied().unwrap_or(Graph::ZERO)
+                };
+                subspace.armature = unknowns.iter().map(of).collect();
+            }
             Eliminated::Plain(EliminatedTree::new(system, subspaces, Basis::Mixed))
         }
+    }
+
+    /// The number of an unknown, as they occur.
+    fn number(&self, place: usize) -> Option<usize> {
+        self.places.iter().position(|&known| known == place)
     }
 
     /// The unknowns, by their places in the embedding.
@@ -262,7 +285,7 @@ impl JointDynamics {
         let mut bodies: Vec<_> =
             (0..self.excitation.bias.len()).map(|moving_body| Inertia::rigid(system, moving_body)).collect();
         let graph = &mut system.graph;
-        let mut matrix = BTreeMap::new();
+        let mut matrix = resistance(graph, &self.armatures);
         let place = |unknown: usize| self.places[unknown];
         for (subspace, unknowns) in self.subspaces.iter().zip(&self.unknowns).rev() {
             let arm = Arm::on_body(graph, subspace);
@@ -331,6 +354,16 @@ impl JointDynamics {
             .map(|((motion, inertia), bias)| inertia.times(graph, motion).plus(graph, bias))
             .collect();
         let mut forces = vec![Graph::ZERO; self.embedding.n_unknowns];
+        for ((row, column), entry) in resistance(graph, &self.armatures) {
+            let mut take = |row: usize, column: usize| {
+                let taken = graph.mul(entry, found[column]);
+                forces[row] = graph.sub(forces[row], taken);
+            };
+            take(row, column);
+            if row != column {
+                take(column, row);
+            }
+        }
         for ((subspace, unknowns), along) in
             self.subspaces.iter().zip(&self.unknowns).zip(&self.excitation.along).rev()
         {
@@ -387,20 +420,6 @@ impl Moving {
         }
         moving
     }
-}
-
-/// Adds what two motions of two unknowns have in common to the lower triangle; on the diagonal both orders of two
-/// motions of the same unknown.
-fn couple(
-    graph: &mut Graph,
-    matrix: &mut BTreeMap<(usize, usize), ExprId>,
-    (a, b): (usize, usize),
-    entry: ExprId,
-    is_same_motion: bool,
-) {
-    let both = if a == b && !is_same_motion { graph.add(entry, entry) } else { entry };
-    let whole = matrix.entry((a.max(b), a.min(b))).or_insert(Graph::ZERO);
-    *whole = graph.add(*whole, both);
 }
 
 /// Translations in the body's own frame.

@@ -66,6 +66,22 @@ pub enum Freedom {
     Whole { position: Place, orientation: Place },
 }
 
+impl Freedom {
+    /// The components of a twist that are free, three displacements before three turns, with their rates.
+    pub fn components(&self) -> Vec<(usize, usize)> {
+        match *self {
+            Self::Rigid => Vec::new(),
+            Self::Turn { place, .. } => vec![(5, place.u)],
+            Self::Slide(place) => vec![(2, place.u)],
+            Self::Ball(place) => (0..3).map(|k| (3 + k, place.u + k)).collect(),
+            Self::Whole { position, orientation } => {
+                let translations = (0..3).map(|k| (k, position.u + k));
+                translations.chain((0..3).map(|k| (3 + k, orientation.u + k))).collect()
+            }
+        }
+    }
+}
+
 /// Root first; `None` if the tree has a joint that is none of these one after the other. `turned` says of an angle
 /// whether it turns the body's frame.
 pub fn stations(

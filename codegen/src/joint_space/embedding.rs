@@ -11,6 +11,7 @@ use crate::derive::system::System;
 use crate::expr::definitions::Values;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
+use crate::solve::gram_schmidt::Armature;
 
 /// `B` and `b`, row by row.
 #[derive(Clone, Debug)]
@@ -80,6 +81,12 @@ impl Embedding {
             })
         };
         self.rates.iter().map(rate).collect()
+    }
+
+    /// The inertias that turn with rates of the tree, with the unknowns that turn them.
+    pub fn armatures(&self, along: &[ExprId]) -> Vec<Armature> {
+        let with = along.iter().zip(&self.rates).filter(|(inertia, _)| **inertia != Graph::ZERO);
+        with.map(|(&inertia, motion)| (inertia, motion.columns.clone())).collect()
     }
 
     /// The force along each unknown, from those along the rates of the tree.

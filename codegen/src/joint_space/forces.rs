@@ -63,6 +63,15 @@ pub fn along(system: &mut System, layout: &Layout, angles: &WholeAngles) -> Vec<
     of_joints.summed_along(system, &parts)
 }
 
+/// The armature along each rate of the tree.
+pub fn armature(system: &mut System, layout: &Layout) -> Vec<ExprId> {
+    let mut all = vec![Graph::ZERO; layout.n_tree_rates()];
+    for scalar in layout.links.iter().flat_map(|link| &link.scalars) {
+        all[scalar.place.u] = system.number(&system.model.joints[scalar.coordinate.joint].armature);
+    }
+    all
+}
+
 /// The loads on each body: these, and what acts along coordinates that are no sums of those of the tree.
 pub fn loads(system: &mut System, (layout, angles): (&Layout, &WholeAngles), others: &[Load]) -> Vec<Load> {
     let of_joints = OfJoints { layout, angles };

@@ -33,6 +33,7 @@ mod jacobian;
 mod layout;
 mod link_kinematics;
 mod loops;
+mod lower_triangle;
 mod maps;
 mod mass_moments;
 mod motions;

@@ -46,14 +46,15 @@ struct Planar<'a> {
     moments: Vec<ExprId>,
 }
 
-/// The accelerations of the rates, if all bodies turn about one direction only and no forces but gravity and those
-/// along joint coordinates act.
+/// The accelerations of the rates, if all bodies turn about one direction only, no joint has an armature and no forces
+/// but gravity and those along joint coordinates act.
 pub fn accelerations(system: &mut System, coordinates: &Coordinates) -> Option<Vec<ExprId>> {
     let is_unloaded = |body: &usize| {
         let load = coordinates.loads[*body];
         load.force == ZERO3 && load.torque == ZERO3
     };
-    if coordinates.closure.rows.is_empty() || !system.moving_bodies.iter().all(is_unloaded) {
+    let has_armature = coordinates.armature.iter().any(|&inertia| inertia != Graph::ZERO);
+    if coordinates.closure.rows.is_empty() || has_armature || !system.moving_bodies.iter().all(is_unloaded) {
         return None;
     }
     let planar = Planar::of(system, coordinates)?;

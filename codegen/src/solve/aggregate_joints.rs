@@ -45,7 +45,7 @@ struct Step {
 }
 
 /// The lower triangle between unknowns that have not been eliminated.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Couplings(BTreeMap<(usize, usize), ExprId>);
 
 impl Couplings {
@@ -73,19 +73,20 @@ impl Couplings {
 }
 
 impl AggregateTree {
-    /// The links come root first; `unknowns` has for each link the unknown of each free twist.
+    /// The links come root first; `unknowns` has for each link the unknown of each free twist. `armature` is what
+    /// resists the unknowns besides the inertia of bodies, its lower triangle.
     pub fn new(
         system: &mut System,
         subspaces: Vec<MotionSubspace>,
         unknowns: Vec<Vec<usize>>,
-        n_unknowns: usize,
+        (n_unknowns, armature): (usize, BTreeMap<(usize, usize), ExprId>),
     ) -> Self {
         let mut left = vec![0; n_unknowns];
         unknowns.iter().flatten().for_each(|&unknown| left[unknown] += 1);
         let n_bodies = system.moving_bodies.len();
         let mut bodies: Vec<_> = (0..n_bodies).map(|body| Inertia::rigid(system, body)).collect();
         let mut pending = vec![BTreeMap::<usize, SpatialVector>::new(); n_bodies];
-        let mut couplings = Couplings::default();
+        let mut couplings = Couplings(armature);
         let graph = &mut system.graph;
         let mut links = Vec::new();
         for (subspace, unknowns) in subspaces.into_iter().zip(&unknowns).rev() {

@@ -10,6 +10,7 @@ use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::vector::{Mat3, UNIT3, Vec3, ZERO3, transposed};
+use crate::solve::component::Component;
 use crate::solve::motion_subspace::{MotionSubspace, Parent};
 
 /// The frames in which an elimination works.
@@ -233,6 +234,13 @@ impl Inertia {
         Self { mass, linear: [ZERO3; 3], coupling: [ZERO3; 3], angular }
     }
 
+    /// A moment of inertia about the first axis, and nothing else.
+    pub fn turning(moment: ExprId) -> Self {
+        let mut angular = [ZERO3; 3];
+        angular[0][0] = moment;
+        Self { mass: Graph::ZERO, linear: [ZERO3; 3], coupling: [ZERO3; 3], angular }
+    }
+
     /// A rigid body in a frame that this one leads to.
     fn turned(self, graph: &mut Graph, frame: &Mat3) -> Self {
         if *frame == UNIT3 {
@@ -326,47 +334,20 @@ struct Step {
     inverse: ExprId,
 }
 
-/// A component of a twist or wrench.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Component {
-    T(usize),
-    Rho(usize),
-}
-
-impl Component {
-    /// The component along which a twist is one, all others being zero.
-    fn of(twist: &SpatialVector) -> Option<Self> {
-        let all = (0..3).map(Self::T).chain((0..3).map(Self::Rho));
-        let mut others = all.filter(|component| *component.get(twist) != Graph::ZERO);
-        let first = others.next()?;
-        (others.next().is_none() && *first.get(twist) == Graph::ONE).then_some(first)
-    }
-
-    fn get(self, twist: &SpatialVector) -> &ExprId {
-        match self {
-            Self::T(k) => &twist.t[k],
-            Self::Rho(k) => &twist.rho[k],
-        }
-    }
-
-    fn set(self, twist: &mut SpatialVector, value: ExprId) {
-        match self {
-            Self::T(k) => twist.t[k] = value,
-            Self::Rho(k) => twist.rho[k] = value,
-        }
-    }
-}
-
 impl EliminatedJoint {
     fn new(system: &mut System, subspace: MotionSubspace, bodies: &[Inertia]) -> Self {
         let graph = &mut system.graph;
         let arm = Arm::on_body(graph, &subspace);
         let mut rest = bodies[subspace.moving_body].seen_through(graph, &arm);
         let mut steps = Vec::new();
-        for twist in &subspace.free {
+        for (k, twist) in subspace.free.iter().enumerate() {
             let resistance = rest.times(graph, twist);
-            let pivot = twist.dot(graph, &resistance);
-            let (component, inverse) = (Component::of(twist), graph.recip(pivot));
+            let own = twist.dot(graph, &resistance);
+            let armature = subspace.armature.get(k).copied().unwrap_or(Graph::ZERO);
+            let pivot = graph.add(own, armature);
+            // An armature resists the twist still, once nothing else does.
+            let component = Component::of(twist).filter(|_| armature == Graph::ZERO);
+            let inverse = graph.recip(pivot);
             let step = Step { twist: *twist, component, resistance, inverse };
             rest = step.eliminate(graph, &rest);
             steps.push(step);

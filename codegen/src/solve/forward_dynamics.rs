@@ -163,12 +163,13 @@ impl Excitation {
         subspaces: impl IntoIterator<Item = &'f MotionSubspace>,
     ) -> Self {
         let n_moving_bodies = system.moving_bodies.len();
-        let forced: Vec<_> = subspaces.into_iter().map(|subspace| subspace.bias).collect();
+        let subspaces: Vec<_> = subspaces.into_iter().collect();
+        let forced: Vec<_> = subspaces.iter().map(|subspace| subspace.bias).collect();
         let bias = (0..n_moving_bodies)
             .map(|moving_body| dynamics.minus_applied_force(&mut system.graph, moving_body))
             .collect();
-        let along = vec![Vec::new(); forced.len()];
-        Self { bias, forced, along }
+        let along = |subspace: &&MotionSubspace| vec![subspace.held_back; subspace.armature.len()];
+        Self { bias, forced, along: subspaces.iter().map(along).collect() }
     }
 }
 

@@ -10,12 +10,16 @@
 use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::spatial_vector::SpatialVector;
+use crate::expr::vector::ZERO3;
 use crate::solve::articulated_body::{Arm, Basis, Excitation, Frames, Inertia, Response};
 use crate::solve::motion_subspace::MotionSubspace;
 use std::collections::BTreeMap;
 
 /// With more rates elimination takes fewer operations: its number grows linearly, here with the third power.
 pub const MAX_RATES: usize = 8;
+
+/// The inertia of an armature, and the unknowns that turn it with their factors.
+pub type Armature = (ExprId, Vec<(usize, ExprId)>);
 
 /// A small open tree whose free twists are orthogonal.
 #[derive(Debug)]
@@ -24,7 +28,7 @@ pub struct GramSchmidtTree {
     pub subspaces: Vec<MotionSubspace>,
     /// Of each moving body.
     frames: Vec<Frames>,
-    /// Of each moving body.
+    /// Of each moving body, then of armatures, each of which moves along a direction of its own.
     bodies: Vec<Inertia>,
     /// Of each subspace the unknowns that its free twists are parts of.
     unknowns: Vec<Vec<usize>>,
@@ -57,21 +61,35 @@ impl GramSchmidtTree {
         let mut next = 0..;
         let each = |subspace: &MotionSubspace| next.by_ref().take(subspace.free.len()).collect();
         let unknowns = subspaces.iter().map(each).collect();
-        Self::of_unknowns(system, subspaces, unknowns, basis)
+        let unknowns: Vec<Vec<usize>> = unknowns;
+        let armature = |(subspace, unknowns): (&MotionSubspace, &Vec<usize>)| {
+            let each = subspace.armature.iter().zip(unknowns);
+            each.map(|(&inertia, &unknown)| (inertia, vec![(unknown, Graph::ONE)])).collect::<Vec<_>>()
+        };
+        let rotors: Vec<_> = subspaces.iter().zip(&unknowns).flat_map(armature).collect();
+        Self::of_unknowns(system, subspaces, (unknowns, &rotors), basis)
     }
 
     /// The same where free twists of several joints may belong to one unknown. Unknowns are numbered root first.
+    /// Armatures are given with the factors by which unknowns turn them.
     pub fn of_unknowns(
         system: &mut System,
         subspaces: Vec<MotionSubspace>,
-        unknowns: Vec<Vec<usize>>,
+        (unknowns, rotors): (Vec<Vec<usize>>, &[Armature]),
         basis: Basis,
     ) -> Self {
         let frames = basis.frames(system);
-        let bodies: Vec<_> =
+        let mut bodies: Vec<_> =
             (0..system.moving_bodies.len()).map(|moving_body| Inertia::rigid(system, moving_body)).collect();
         let graph = &mut system.graph;
-        let motions = motions_at_unit_rates(graph, &subspaces, &unknowns);
+        let mut motions = motions_at_unit_rates(graph, &subspaces, &unknowns);
+        for (inertia, factors) in rotors {
+            for &(unknown, factor) in factors {
+                let turning = SpatialVector { t: ZERO3, rho: [factor, Graph::ZERO, Graph::ZERO] };
+                motions[unknown].insert(bodies.len(), turning);
+            }
+            bodies.push(Inertia::turning(*inertia));
+        }
         let mut columns: BTreeMap<usize, Column> = BTreeMap::new();
         for (rate, mut motion) in motions.into_iter().enumerate().rev() {
             let mut yielding = Vec::new();
@@ -96,6 +114,7 @@ impl GramSchmidtTree {
         let mut left: Vec<_> = (self.bodies.iter().zip(&unforced).zip(&bias))
             .map(|((body, motion), bias)| body.times(graph, motion).plus(graph, bias).negated(graph))
             .collect();
+        left.resize(self.bodies.len(), SpatialVector::ZERO);
         let mut forces = vec![Graph::ZERO; self.columns.len()];
         for (unknowns, along) in self.unknowns.iter().zip(along) {
             for (&unknown, &along) in unknowns.iter().zip(along) {
@@ -133,7 +152,7 @@ impl GramSchmidtTree {
         forced: &[SpatialVector],
         rates: &[Vec<ExprId>],
     ) -> Vec<SpatialVector> {
-        let mut motions = vec![SpatialVector::ZERO; self.bodies.len()];
+        let mut motions = vec![SpatialVector::ZERO; self.frames.len()];
         for ((subspace, forced), rates) in self.subspaces.iter().zip(forced).zip(rates) {
             let mut motion = *forced;
             if let Some(parent) = subspace.parent {

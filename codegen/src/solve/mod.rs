@@ -4,6 +4,7 @@ pub mod aggregate_joints;
 pub mod articulated_body;
 pub mod axis_bias;
 pub mod cancellation;
+pub mod component;
 pub mod forward_dynamics;
 pub mod gram_schmidt;
 pub mod ldl;

@@ -36,6 +36,11 @@ pub struct MotionSubspace {
     pub bias: SpatialVector,
     /// The short way to its rotation.
     pub axis_bias: Option<AxisBias>,
+    /// Of each free twist the inertia that resists it besides those of bodies: that of an armature; nothing if none has
+    /// any.
+    pub armature: Vec<ExprId>,
+    /// The force along the free twist by which the armature resists the bias.
+    pub held_back: ExprId,
 }
 
 /// The parent's end of a joint.
@@ -92,6 +97,8 @@ impl MotionSubspace {
             forced: Vec::new(),
             bias,
             axis_bias: None,
+            armature: Vec::new(),
+            held_back: Graph::ZERO,
         }
     }
 
@@ -153,18 +160,34 @@ impl MotionSubspace {
             let back = [0, 1, 2].map(|column| joint.relative.map(|row| row[column]));
             bias.rho = axis_bias.angular_acceleration(&mut system.graph, &back, &UNIT3);
         }
+        let free: Vec<_> = sliding.chain(turning).collect();
+        let own = &system.model.joints[index].armature;
+        let armature = if own.is_zero() { Vec::new() } else { vec![system.number(own)] };
+        let held_back = held_back(&mut system.graph, &armature, &free, &bias);
         Self {
             moving_body,
             parent: Parent::of(system, &joint, reversed, parent_point),
             point,
             frame: system.poses[system.moving_bodies[moving_body]].a,
-            free: sliding.chain(turning).collect(),
+            free,
             rows,
             forced,
             bias,
             axis_bias,
+            armature,
+            held_back,
         }
     }
+}
+
+/// The force along a free twist by which an armature resists the bias. Only that of a rotation has a part along it:
+/// displacements that rows force are across.
+fn held_back(graph: &mut Graph, armature: &[ExprId], free: &[SpatialVector], bias: &SpatialVector) -> ExprId {
+    armature.iter().zip(free).fold(Graph::ZERO, |sum, (&inertia, twist)| {
+        let along = graph.dot(&twist.rho, &bias.rho);
+        let taken = graph.mul(inertia, along);
+        graph.sub(sum, taken)
+    })
 }
 
 /// What the rows with these right-hand sides force upon a body.
@@ -194,7 +217,7 @@ impl MotionSubspace {
             let turned = graph.cross(&arm, &twist.rho);
             SpatialVector { t: graph.add_vec(&twist.t, &turned), ..twist }
         };
-        let [free, forced] = [&self.free, &self.forced].map(|twists| {
+        let [free, forced]: [Vec<_>; 2] = [&self.free, &self.forced].map(|twists| {
             let twists = twists.iter().map(|twist| {
                 let turned = turned(graph, twist);
                 moved(graph, turned)
@@ -209,13 +232,14 @@ impl MotionSubspace {
             let arm_of_parent = graph.mat_vec(&of_parent, &parent.point);
             bias.t = axis_bias.acceleration_of_point(graph, (&of_parent, &arm_of_parent), (&a, &arm));
         }
+        let held_back = held_back(graph, &self.armature, &free, &bias);
         let bias = moved(graph, bias);
         let parent = self.parent.zip(of_parent).map(|(parent, a)| {
             let point = graph.mat_vec(&a, &parent.point);
             let point = graph.sub_vec(&point, &arm);
             Parent { moving_body: parent.moving_body, point, relative: UNIT3, frame: UNIT3, carried: UNIT3 }
         });
-        Self { parent, point: ZERO3, frame: UNIT3, free, forced, bias, ..self.clone() }
+        Self { parent, point: ZERO3, frame: UNIT3, free, forced, bias, held_back, ..self.clone() }
     }
 }
 

@@ -1,5 +1,6 @@
 //! λ from the balance of forces, leaf to root: what a body and all that hangs on it lack, its joint supplies.
 
+use crate::derive::armature::known;
 use crate::derive::dynamics::Dynamics;
 use crate::derive::kinematics::Kinematics;
 use crate::derive::system::System;
@@ -9,7 +10,6 @@ use crate::expr::symbol::Symbol;
 use crate::solve::articulated_body::{Arm, Inertia};
 use crate::solve::loop_closure::gradient;
 use crate::solve::motion_subspace::MotionSubspace;
-use std::array::from_fn;
 
 /// The multiplier of each row, in terms of known accelerations and loop multipliers.
 pub fn of(
@@ -47,10 +47,19 @@ pub fn of(
 
 /// `M v̇ − f` of one body, v̇ known.
 pub fn imbalance(system: &mut System, dynamics: &Dynamics, moving_body: usize) -> SpatialVector {
-    let mut component = |k| system.graph.symbol(Symbol::Acceleration { moving_body, k });
-    let motion = SpatialVector { t: from_fn(&mut component), rho: from_fn(|k| component(3 + k)) };
+    let motion = known(&mut system.graph, moving_body);
     let (inertia, bias) =
         (Inertia::rigid(system, moving_body), dynamics.minus_applied_force(&mut system.graph, moving_body));
     let inertial = inertia.times(&mut system.graph, &motion);
-    inertial.plus(&mut system.graph, &bias)
+    let mut lacking = inertial.plus(&mut system.graph, &bias);
+    for rotor in &dynamics.rotors {
+        let (along, acceleration) = (rotor.on(system, moving_body), rotor.acceleration(system));
+        let graph = &mut system.graph;
+        // The bias of the rotor is among the applied forces.
+        let accelerated = graph.sub(acceleration, rotor.bias);
+        let taken = graph.mul(rotor.inertia, accelerated);
+        let taken = along.scaled(graph, taken);
+        lacking = lacking.plus(graph, &taken);
+    }
+    lacking
 }

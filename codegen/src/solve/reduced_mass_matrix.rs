@@ -68,6 +68,11 @@ impl ReducedTree {
         let mut tree =
             Self { subspaces, held, bodies, columns, matrix: BTreeMap::new(), n_rates: axes.len() };
         tree.matrix = tree.mass_matrix(graph, &axes);
+        let armatures = own.iter().flat_map(|own| own.free.iter().zip(0..).map(|(_, k)| own.armature.get(k)));
+        for (rate, &armature) in armatures.enumerate().filter_map(|(rate, of)| Some((rate, of?))) {
+            let entry = tree.matrix.entry((rate, rate)).or_insert(Graph::ZERO);
+            *entry = graph.add(*entry, armature);
+        }
         tree
     }
 
@@ -112,7 +117,10 @@ impl ReducedTree {
             .map(|moving_body| dynamics.minus_applied_force(&mut system.graph, moving_body))
             .collect();
         let motions = self.unforced(&mut system.graph);
-        self.respond(&mut system.graph, &bias, motions)
+        let along =
+            self.subspaces.iter().flat_map(|subspace| subspace.free.iter().map(|_| subspace.held_back));
+        let along = along.collect();
+        self.respond(&mut system.graph, &bias, motions, along)
     }
 
     /// How each mass centre accelerates while no rate changes. What is fixed to a body at s from its mass centre
@@ -151,27 +159,29 @@ impl ReducedTree {
             let forced = subspace.forced_by(graph, changes);
             motions[subspace.moving_body] = subspace.on_parent(graph, &motions, &forced);
         }
-        self.respond(graph, &vec![SpatialVector::ZERO; self.bodies.len()], motions)
+        let none = vec![Graph::ZERO; self.n_rates];
+        self.respond(graph, &vec![SpatialVector::ZERO; self.bodies.len()], motions, none)
     }
 
-    /// How each mass centre moves under minus these wrenches, where with no rate changing it would move like this.
+    /// How each mass centre moves under minus these wrenches and these forces along the rates, where with no rate
+    /// changing it would move like this.
     fn respond(
         &self,
         graph: &mut Graph,
         bias: &[SpatialVector],
         mut motions: Vec<SpatialVector>,
+        mut rhs: Vec<ExprId>,
     ) -> Vec<SpatialVector> {
         let mut taken: Vec<_> = (self.bodies.iter().zip(&motions).zip(bias))
             .map(|((body, motion), bias)| body.taken(graph, motion, bias))
             .collect();
-        let mut rhs = vec![Graph::ZERO; self.n_rates];
         let mut last = self.n_rates;
         for subspace in self.subspaces.iter().rev() {
             let wrench = taken[subspace.moving_body];
             let first = last - subspace.free.len();
             for (rhs, twist) in rhs[first..last].iter_mut().zip(&subspace.free) {
                 let resisted = twist.dot(graph, &wrench);
-                *rhs = graph.neg(resisted);
+                *rhs = graph.sub(*rhs, resisted);
             }
             last = first;
             if let Some(parent) = subspace.parent {

@@ -11,7 +11,7 @@ use super::{joint_start, references, tables};
 use crate::validate::{Owner, Place, Side};
 use crate::{Joint, JointEnd, JointKind, Number};
 
-const KEYS: [&str; 23] = [
+const KEYS: [&str; 24] = [
     "name",
     "kind",
     "first",
@@ -20,6 +20,7 @@ const KEYS: [&str; 23] = [
     "axis",
     "zero",
     "friction",
+    "armature",
     "lead",
     "pitch",
     "length",
@@ -72,6 +73,7 @@ fn joint(
         first,
         second,
         friction: section.number_or(reader, "friction", 0),
+        armature: section.number_or(reader, "armature", 0),
         start: joint_start::read(reader, &section, kind),
         lead: lead(reader, &shared),
         length: length(reader, &shared),

@@ -21,10 +21,11 @@ pub(super) const KINDS: [(&str, JointKind); 10] = {
 };
 
 /// Keys that only some kinds have.
-const OF_KINDS: [&str; 17] = [
+const OF_KINDS: [&str; 18] = [
     "axis",
     "zero",
     "friction",
+    "armature",
     "lead",
     "pitch",
     "length",
@@ -89,6 +90,7 @@ fn has(kind: JointKind, key: &str) -> bool {
     match key {
         "axis" | "zero" => !directed_sides(kind).is_empty(),
         "friction" => kind == JointKind::Spherical || kind.coordinates().len() == 1,
+        "armature" => kind.turns_one_rotor(),
         "lead" | "pitch" => kind == JointKind::Screw,
         "length" => kind == JointKind::Rod,
         "orientation" => kind == JointKind::Spherical,
@@ -113,6 +115,9 @@ fn help(kind: JointKind, key: &str) -> String {
         }
         (_, JointKind::Fixed) => "remove it: a fixed joint does not move",
         (_, JointKind::Rod) => "remove it: a rod has no coordinate",
+        ("armature", _) => {
+            "remove it: a rotor turns with a joint of one freedom, revolute, prismatic or screw"
+        }
         ("friction", _) => "add a [[force]] of kind \"damper\" on each coordinate that is to resist",
         (_, JointKind::Spherical) => "start it with orientation = [e0, e1, e2, e3]",
         _ => return start_help(kind),

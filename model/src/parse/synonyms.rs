@@ -4,7 +4,7 @@
 //! One word may stand for several of ours; which is meant depends on the keys that are known in its place.
 
 /// Words of others, each with those of ours that it may stand for, the likeliest first.
-const WORDS: [(&[&str], &[&str]); 62] = [
+const WORDS: [(&[&str], &[&str]); 63] = [
     // Kinds of joint.
     (&["hinge", "pin", "continuous", "rotary", "rotational", "rotation", "pivot_joint", "r"], &["revolute"]),
     (&["slide", "slider", "sliding", "translational", "linear", "prism", "p"], &["prismatic"]),
@@ -79,6 +79,7 @@ const WORDS: [(&[&str], &[&str]); 62] = [
     (&["direction", "normal"], &["axis"]),
     (&["reference", "ref_direction", "x_axis"], &["zero"]),
     (&["damping", "viscosity", "b", "c", "d"], &["friction", "damping"]),
+    (&["rotor_inertia", "motor_inertia", "reflected_inertia"], &["armature"]),
     (&["theta", "phi", "initial_angle", "angle_rad"], &["angle"]),
     (&["theta_deg", "initial_angle_deg", "degrees"], &["angle_deg"]),
     (&["thread_pitch", "screw_thread_pitch"], &["pitch"]),

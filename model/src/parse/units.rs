@@ -93,6 +93,7 @@ fn of_key(key: &str) -> Option<&'static str> {
         "rate" => "rad/s or m/s",
         "lead" => "m/rad",
         "pitch" => "m a turn",
+        "armature" => "kg.m2 or kg",
         "friction" | "damping" => "N.m.s/rad or N.s/m",
         "stiffness" => "N.m/rad or N/m",
         "free" | "limit" | "softness" | "amplitude" | "motion" | "offset" => "rad or m",

@@ -20,6 +20,7 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     }
     for (index, joint) in model.joints.iter().enumerate() {
         found.extend(friction(model, index, joint));
+        found.extend(armature(model, index, joint));
         found.extend(advance(model, index, joint));
         found.extend(length(model, index, joint));
         found.extend(directions::of_start(model, index, joint));
@@ -73,6 +74,19 @@ fn friction(model: &Model, index: usize, joint: &Joint) -> Option<Problem> {
         message: format!("the friction of joint `{}` is negative", joint.name),
         label: format!("{} {unit} would drive the joint", shown(&value)),
         help: "write a coefficient of 0 or more".to_owned(),
+    })
+}
+
+fn armature(model: &Model, index: usize, joint: &Joint) -> Option<Problem> {
+    let value = model.exact(&joint.armature);
+    let unit = if joint.kind == JointKind::Prismatic { "kg" } else { "kg.m2" };
+    value.is_negative().then(|| Problem {
+        place: Place::joint(index, "armature"),
+        also: None,
+        message: format!("the armature of joint `{}` is negative", joint.name),
+        label: format!("{} {unit} would gain energy as it is slowed down", shown(&value)),
+        help: "write an inertia of 0 or more: that of the rotor times the square of the gear's ratio"
+            .to_owned(),
     })
 }
 

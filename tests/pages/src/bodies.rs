@@ -101,6 +101,9 @@ impl Page {
         if has_friction && kind.name != "point_on_line" && self.dice.once_in(4) {
             text += &format!("friction = {}\n", self.positive());
         }
+        if kind.freedoms == 1 && self.rotors.once_in(8) {
+            text += &format!("armature = {}\n", self.rotors.pick(&["0.02", "0.15", "0.3", "1.25"]));
+        }
         let starts = self.starts(kind, has_spin);
         let root = self.roots[parent];
         self.joints.push(Joint { kind, root, text, starts, taken: Vec::new(), following: Vec::new() });

@@ -65,6 +65,8 @@ pub struct Page {
     pub dice: Dice,
     /// How numbers are written, apart from what they are; plainly if there is none.
     pub ways: Option<Dice>,
+    /// Decides on armatures.
+    pub rotors: Dice,
     pub name: String,
     pub parameters: Vec<(String, String)>,
     /// Those that are computed from others.
@@ -99,6 +101,7 @@ impl Page {
         Self {
             dice,
             ways: None,
+            rotors: Dice::new(!seed),
             name: format!("page_{seed}"),
             parameters: Vec::new(),
             derived: Vec::new(),

@@ -166,11 +166,7 @@ fn slope(mut f: impl FnMut(f64) -> Vec<f64>) -> Vec<f64> {
 
 /// `diag(M, J')`, from the model file.
 fn diagonal(model: &Model) -> DMatrix<f64> {
-    let number = |number: &Number| match number {
-        Number::Exact(value) => to_f64(value),
-        Number::Parameter { index, .. } => to_f64(&model.parameters[*index].value),
-        Number::Input { .. } => f64::NAN,
-    };
+    let number = |number: &Number| model.value(number);
     let bodies = model.coordinate_bodies();
     let mut matrix = DMatrix::zeros(6 * bodies.len(), 6 * bodies.len());
     for (place, &body) in bodies.iter().enumerate() {
@@ -181,6 +177,27 @@ fn diagonal(model: &Model) -> DMatrix<f64> {
         }
     }
     matrix
+}
+
+/// What armatures add to the mass matrix: of each the inertia times the squares of the rates that turn it, by couplers
+/// too.
+fn armatures<M: JointSpace<Scalar = f64>>(model: &Model, mechanism: &M) -> DMatrix<f64> {
+    let n = mechanism.joint_layout().n_rates();
+    let (mut turning, mut at) = (vec![DVector::zeros(n); model.joints.len()], 0);
+    for place in mechanism.joint_layout().places {
+        if let JointPlace::Scalar { joint, .. } = *place {
+            turning[usize::from(joint)][at] = 1.0;
+        }
+        at += place.n_rates();
+    }
+    for coupler in &model.couplers {
+        let Number::Exact(ratio) = &coupler.ratio else { panic!("a ratio that is no parameter") };
+        turning[coupler.second.joint] = &turning[coupler.first.joint] * to_f64(ratio);
+    }
+    let joints = model.joints.iter().zip(&turning);
+    joints.fold(DMatrix::zeros(n, n), |sum, (joint, turning)| {
+        sum + turning * turning.transpose() * model.value(&joint.armature)
+    })
 }
 
 /// B: how the velocities of the bodies depend on the rates.
@@ -196,7 +213,7 @@ fn free_motions<M: JointSpace<Scalar = f64>>(mechanism: &M, t: f64, x: &M::Joint
     DMatrix::from_columns(&columns.collect::<Vec<_>>())
 }
 
-/// `Bᵀ (M v̇ − f)` with f of the runtime-assembled model.
+/// `Bᵀ (M v̇ − f)` with f of the runtime-assembled model, and what armatures take.
 fn virtual_power<M>(
     model: &Model,
     mechanism: &M,
@@ -206,8 +223,11 @@ fn virtual_power<M>(
 where
     M: JointSpace<Scalar = f64>,
 {
+    // What armatures take is added here.
+    let mut bare = model.clone();
+    bare.joints.iter_mut().for_each(|joint| joint.armature = Number::integer(0));
     let (mut dense, n) =
-        (Dense::<f64>::new(model).expect("a dense form"), mechanism.description().bodies.len());
+        (Dense::<f64>::new(&bare).expect("a dense form"), mechanism.description().bodies.len());
     inputs.iter().enumerate().for_each(|(index, &value)| assert!(dense.set_input(index, value)));
     let accelerations =
         slope(|h| maximal(mechanism, t + h, &moved(mechanism, x, given, h))[7 * n..13 * n].to_vec());
@@ -217,7 +237,8 @@ where
     dense.applied_force(t, &y, &mut applied);
     let imbalance =
         diagonal(model) * DVector::from_vec(accelerations) - DVector::from_column_slice(applied.as_ref());
-    (free_motions(mechanism, t, x).transpose() * imbalance).as_slice().to_vec()
+    let rotors = armatures(model, mechanism) * DVector::from_column_slice(given);
+    (free_motions(mechanism, t, x).transpose() * imbalance + rotors).as_slice().to_vec()
 }
 
 /// The largest difference, relative to the largest number.
@@ -248,9 +269,9 @@ fn check<M: InverseDynamics<Scalar = f64> + MassMatrix + Clone>(name: &str, mech
         // τ = M a + h.
         let sum = &mass * DVector::from_column_slice(given.as_ref()) + DVector::from_column_slice(&h);
         worst[1] = worst[1].max(difference(&tau, sum.as_slice()));
-        // M = Bᵀ diag(M, J') B.
+        // M = Bᵀ diag(M, J') B, and armatures.
         let b = free_motions(&mechanism, t, &x);
-        let composed = b.transpose() * diagonal(&model) * &b;
+        let composed = b.transpose() * diagonal(&model) * &b + armatures(&model, &mechanism);
         worst[2] = worst[2].max(difference(mass.as_slice(), composed.as_slice()));
         // The accelerations of the joints take no force.
         let mut free = mechanism.joint_buffers().rates;

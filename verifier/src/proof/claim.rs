@@ -378,7 +378,7 @@ fn derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let mut expected = textbook.position_rates();
     expected.extend(accelerations[..6 * case.n_bodies()].iter().cloned());
     if case.model.has_work() {
-        let [forces, drivers] = textbook.power(&multipliers)?;
+        let [forces, drivers] = textbook.power(&multipliers, &accelerations)?;
         expected.push(forces.add(&drivers));
     }
     expected.extend(textbook.turn_rates());

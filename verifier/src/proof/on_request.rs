@@ -63,10 +63,11 @@ pub fn gravity_forces<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(equal(case, &case.run("gravity_forces", &case.point), &expected))
 }
 
-/// `Bᵀ diag(M, J') B`, row by row.
+/// `Bᵀ M B`, row by row, armatures being part of M.
 fn masses<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let columns = free_motions(case)?;
-    let textbook = case.textbook(&case.point)?;
+    let maximal = case.maximal(&case.joints);
+    let textbook = case.textbook(&maximal)?;
     let mass = textbook.mass_matrix();
     let moved: Vec<_> = columns.iter().map(|column| textbook.product(&mass, column)).collect();
     Some(columns.iter().flat_map(|row| moved.iter().map(move |column| dot(row, column))).collect())

@@ -1,15 +1,17 @@
 //! The dynamic side of eq. (17), energies and powers.
 
 use super::Evaluation;
+use super::armature::Rotor;
 use super::jet::Jet;
 use super::linear::{Matrix, Vector};
+use super::load::Load;
 use super::pose::Moving;
 use super::sparse::Sparse;
 use crate::field::Field;
 use gyro_model::Support;
 
 impl<F: Field> Evaluation<'_, F> {
-    /// `diag(M, J')` of eq. (17), (s̈, ẇ') body after body.
+    /// `diag(M, J')` of eq. (17), (s̈, ẇ') body after body, and `J b bᵀ` of armatures.
     pub fn mass_matrix(&self) -> Sparse<F> {
         let size = 6 * self.textbook.moving_bodies.len();
         let mut matrix = Sparse::new(size, size);
@@ -24,10 +26,21 @@ impl<F: Field> Evaluation<'_, F> {
                 }
             }
         }
+        for rotor in self.rotors() {
+            let places = self.places_of(&rotor);
+            for (row, left) in &places {
+                let scaled = rotor.inertia.value.mul(left);
+                for (column, right) in &places {
+                    let added = scaled.mul(right);
+                    let entry = matrix.rows[*row].entry(*column);
+                    entry.and_modify(|x| *x = x.add(&added)).or_insert(added);
+                }
+            }
+        }
         matrix
     }
 
-    /// `(f, n' − w̃'J'w')` body after body; gravity is eq. (21).
+    /// `(f, n' − w̃'J'w')` body after body, less `J b (ḃ·v)` of armatures; gravity is eq. (21).
     pub fn applied_force(&self) -> Option<Vec<F>> {
         let (loads, gravity) = (self.forces()?.loads, self.gravity());
         let mut applied = Vec::new();
@@ -36,6 +49,12 @@ impl<F: Field> Evaluation<'_, F> {
             let force = gravity.times(&self.mass(body)) + &loads[body].force;
             let torque = loads[body].torque.clone() - w.cross(&self.inertia(body).apply(w));
             applied.extend(force.0.into_iter().chain(torque.0).map(|x| x.value));
+        }
+        for rotor in self.rotors() {
+            let taken = rotor.inertia.value.mul(&rotor.bias);
+            for (place, b) in self.places_of(&rotor) {
+                applied[place] = applied[place].sub(&taken.mul(&b));
+            }
         }
         Some(applied)
     }
@@ -50,7 +69,8 @@ impl<F: Field> Evaluation<'_, F> {
         self.textbook.moving_bodies.iter().flat_map(weight).collect()
     }
 
-    /// Kinetic and potential energy: `½ Σ (m s·s + w'·J'w')`, `−Σ m g·r` and the energy of springs.
+    /// Kinetic and potential energy: `½ Σ (m s·s + w'·J'w')` with `½ J (b·v)²` of armatures, `−Σ m g·r` and the energy
+    /// of springs.
     pub fn energy(&self) -> Option<[F; 2]> {
         let (mut twice_kinetic, mut potential) = (self.scope.zero.clone(), self.forces()?.potential);
         let gravity = self.gravity();
@@ -59,16 +79,20 @@ impl<F: Field> Evaluation<'_, F> {
             twice_kinetic = twice_kinetic + &mass * s.dot(s) + w.dot(&self.inertia(body).apply(w));
             potential = potential - mass * gravity.dot(&pose.r);
         }
+        for Rotor { inertia, rate, .. } in self.rotors() {
+            twice_kinetic = twice_kinetic + inertia * &rate * &rate;
+        }
         Some([twice_kinetic * &self.scope.half, potential].map(|energy| energy.value))
     }
 
-    /// Power of non-conservative forces and power of the drivers, from the multipliers of all rows.
+    /// Power of non-conservative forces and power of the drivers, from the multipliers of all rows and the
+    /// accelerations `(s̈, ẇ')` that go with them.
     ///
     /// Drivers do `−λᵀν`; what moves a driven body does besides what it takes against the forces on that body.
-    pub fn power(&self, lambda: &[F]) -> Option<[F; 2]> {
+    pub fn power(&self, lambda: &[F], accelerations: &[F]) -> Option<[F; 2]> {
         let nu = self.nu()?;
         let of_rows = lambda.iter().zip(&nu).map(|(lambda, nu)| lambda.mul(nu).neg());
-        self.powers(of_rows.fold(self.scope.zero.value.clone(), |sum, x| sum.add(&x)))
+        self.powers(of_rows.fold(self.scope.zero.value.clone(), |sum, x| sum.add(&x)), accelerations)
     }
 
     /// The same from accelerations `(s̈, ẇ')` that satisfy eq. (17), where the velocities satisfy eq. (18): then
@@ -78,12 +102,20 @@ impl<F: Field> Evaluation<'_, F> {
         let moving_bodies = 0..self.textbook.moving_bodies.len();
         let velocities =
             moving_bodies.flat_map(|moving_body| self.scope.point.velocity(self.textbook.model, moving_body));
-        self.powers(self.dot(velocities, &imbalance))
+        self.powers(self.dot(velocities, &imbalance), accelerations)
     }
 
     /// Both powers from `−λᵀν`.
-    fn powers(&self, of_rows: F) -> Option<[F; 2]> {
-        let (forces, mut drivers) = (self.forces()?, of_rows);
+    fn powers(&self, of_rows: F, accelerations: &[F]) -> Option<[F; 2]> {
+        let (mut forces, mut drivers) = (self.forces()?, of_rows);
+        for rotor in self.rotors() {
+            let taken = rotor.inertia.value.mul(&self.acceleration_of(&rotor, accelerations));
+            let back = Jet::constant(taken.neg());
+            for (body, along) in &rotor.along {
+                let (force, torque) = (along.force.times(&back), along.torque.times(&back));
+                forces.loads[*body] = forces.loads[*body].plus(&Load { force, torque });
+            }
+        }
         for (body, load) in forces.loads.iter().enumerate() {
             if self.textbook.model.bodies[body].support == Support::Driven {
                 drivers = drivers.sub(&load.power(&self.moving[body]).value);

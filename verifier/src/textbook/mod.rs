@@ -7,6 +7,7 @@
 //!
 //! Functions return `None` where a formula divides by zero: such a point decides nothing, another must be taken.
 
+mod armature;
 mod attitude;
 mod coordinate;
 mod dynamics;

@@ -112,7 +112,7 @@ impl<F: Field> Evaluation<'_, F> {
             }
             OutputKind::Driver { driver } => vec![self.driver(*driver, lambda)],
             OutputKind::Energy => self.energy()?.to_vec(),
-            OutputKind::Power => self.power(lambda)?.to_vec(),
+            OutputKind::Power => self.power(lambda, accelerations)?.to_vec(),
         })
     }
 

@@ -21,7 +21,7 @@ const SOLVED: f64 = 1e-9;
 fn energy_changes_by_the_power_of_what_is_not_conservative() {
     for_each_motion(|what, textbook, point| {
         let (accelerations, lambda) = accelerations(textbook, point);
-        let [non_conservative, drivers] = at(textbook, point).power(&lambda).expect("power");
+        let [non_conservative, drivers] = at(textbook, point).power(&lambda, &accelerations).expect("power");
         let energies = |dt: f64| {
             let moved = later(textbook, point, &accelerations, dt);
             at(textbook, &moved).energy().expect("energy").to_vec()

@@ -9,6 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 
 const ALL_JOINTS: &str = "../tests/models/all-joints.toml";
+const ARMATURE: &str = "../tests/models/armature.toml";
 const RAFT: &str = "src/textbook/tests/raft.toml";
 
 /// States of each model.
@@ -25,7 +26,8 @@ const BEYOND_DIFFERENCES: [&str; 5] = [
     "gyroscope-stiff",
 ];
 
-/// All models of the folder `models/` but those, one of every kind of joint, and one of what they lack.
+/// All models of the folder `models/` but those, one of every kind of joint, one with armatures, and one of what
+/// they lack.
 pub fn models() -> Vec<Model> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let entries = std::fs::read_dir(here.join("../models")).expect("the folder of models");
@@ -33,7 +35,7 @@ pub fn models() -> Vec<Model> {
     let pages = pages.filter(|path| path.extension().is_some_and(|extension| extension == "toml"));
     let pages =
         pages.filter(|path| !BEYOND_DIFFERENCES.iter().any(|name| path.file_stem() == Some(name.as_ref())));
-    let mut pages: Vec<_> = pages.chain([ALL_JOINTS, RAFT].map(|page| here.join(page))).collect();
+    let mut pages: Vec<_> = pages.chain([ALL_JOINTS, ARMATURE, RAFT].map(|page| here.join(page))).collect();
     pages.sort();
     pages.iter().map(|path| read(path)).collect()
 }
