@@ -10,7 +10,7 @@ use gyro_verifier::Seed;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-pub(crate) use export::{CArgs, ExportArgs, Target};
+pub(crate) use export::{CArgs, CosimulationMethod, ExportArgs, FmuArgs, Target};
 pub(crate) use show::{Change, ShowArgs};
 pub(crate) use begin::{CheckArgs, NewArgs, Template};
 pub(crate) use simulate::{Engine, InputSetting, Precision, SimulateArgs};

@@ -2,6 +2,8 @@
 //!
 //! Everything is made in memory, and a library in a folder of its own, before anything is written.
 
+mod fmu;
+
 use crate::args::{CArgs, ExportArgs, Precision, Target};
 use crate::failure::Failure;
 use crate::generate::{Asked, modules};
@@ -20,6 +22,7 @@ use std::{env, fs, process};
 pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     match &args.target {
         Target::C(args) => c(args),
+        Target::Fmu(args) => fmu::fmu(args),
     }
 }
 
@@ -94,19 +97,20 @@ fn compiled(name: &str, exported: &Exported) -> Result<Vec<u8>, Failure> {
     fs::write(&source, &exported.source).map_err(failed(&source))?;
     let cc = env::var_os("CC").unwrap_or_else(|| "cc".into());
     let flags = ["-std=c99", "-O2", "-ffp-contract=off", "-c", "-o"].map(OsStr::new);
-    run(&cc, &[&flags[..], &[object.as_os_str(), source.as_os_str()]].concat(), "CC")?;
+    let instead = "leave --library away";
+    run(&cc, &[&flags[..], &[object.as_os_str(), source.as_os_str()]].concat(), "CC", instead)?;
     let ar = env::var_os("AR").unwrap_or_else(|| "ar".into());
-    run(&ar, &[OsStr::new("rcs"), library.as_os_str(), object.as_os_str()], "AR")?;
+    run(&ar, &[OsStr::new("rcs"), library.as_os_str(), object.as_os_str()], "AR", instead)?;
     drop(spinner);
     fs::read(&library).map_err(failed(&library))
 }
 
-fn run(program: &OsString, arguments: &[&OsStr], variable: &str) -> Result<(), Failure> {
+/// Runs a compiler. A variable names another one; `instead` is what else to do.
+fn run(program: &OsString, arguments: &[&OsStr], variable: &str, instead: &str) -> Result<(), Failure> {
     let shown = program.to_string_lossy();
     let output = Command::new(program).args(arguments).output().map_err(|e| {
         Failure::Usage(format!(
-            "--library needs `{shown}`, which cannot be started: {e}: install gcc or clang, set {variable}, or leave \
-             --library away"
+            "a library needs `{shown}`, which cannot be started: {e}: install gcc or clang, set {variable}, or {instead}"
         ))
     })?;
     if output.status.success() {

@@ -77,7 +77,8 @@ fn is_own(path: &Path, known: Known) -> bool {
 ///
 /// The text goes to a neighbour that is then renamed: at no time is half of it to be seen. Its folder is made if need
 /// be.
-pub fn write(path: &Path, text: &str, known: Known) -> Result<bool, Failure> {
+pub fn write(path: &Path, text: impl AsRef<[u8]>, known: Known) -> Result<bool, Failure> {
+    let text = text.as_ref();
     check(path, known)?;
     if holds(path, text) {
         return Ok(false);
@@ -91,11 +92,11 @@ pub fn write(path: &Path, text: &str, known: Known) -> Result<bool, Failure> {
     replace(path, text).map(|()| true).map_err(failed)
 }
 
-fn replace(path: &Path, text: &str) -> io::Result<()> {
+fn replace(path: &Path, text: &[u8]) -> io::Result<()> {
     // A link stays, and what it leads to is replaced.
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let (neighbour, mut file) = neighbour(&path)?;
-    let written = file.write_all(text.as_bytes()).and_then(|()| fs::rename(&neighbour, &path));
+    let written = file.write_all(text).and_then(|()| fs::rename(&neighbour, &path));
     if written.is_err() {
         // The first error is the one to tell.
         let _ = fs::remove_file(&neighbour);
@@ -135,11 +136,11 @@ fn is_recorded(path: &Path, text: &[u8]) -> bool {
 }
 
 /// Adds a line to the record of a folder. Lines are added whole, so that two runs at once do not spoil it.
-fn record(path: &Path, text: &str) -> io::Result<()> {
-    if is_recorded(path, text.as_bytes()) {
+fn record(path: &Path, text: &[u8]) -> io::Result<()> {
+    if is_recorded(path, text) {
         return Ok(());
     }
-    let line = line(path, text.as_bytes()) + "\n";
+    let line = line(path, text) + "\n";
     OpenOptions::new().create(true).append(true).open(record_of(path))?.write_all(line.as_bytes())
 }
 
@@ -158,8 +159,8 @@ fn line(path: &Path, text: &[u8]) -> String {
 }
 
 /// Whether a file is there with just this text.
-pub fn holds(path: &Path, text: &str) -> bool {
-    fs::read(path).is_ok_and(|old| old == text.as_bytes())
+pub fn holds(path: &Path, text: impl AsRef<[u8]>) -> bool {
+    fs::read(path).is_ok_and(|old| old == text.as_ref())
 }
 
 /// A place that cannot be written to was asked for wrongly; a full disk was not.

@@ -7,6 +7,7 @@
 #![deny(missing_docs)]
 
 mod expressions;
+pub mod fmu;
 mod functions;
 mod module;
 mod names;

@@ -3,7 +3,7 @@
 use crate::Error;
 use quote::ToTokens;
 use std::collections::BTreeMap;
-use syn::{Expr, Fields, FnArg, ImplItem, ImplItemFn, Item, ItemImpl, ItemMod, Lit, Type};
+use syn::{Expr, Fields, FnArg, ImplItem, ImplItemFn, Item, ItemImpl, ItemMod, Lit, Stmt, Type, UnOp};
 
 /// What a module has.
 #[derive(Default)]
@@ -70,6 +70,14 @@ impl Module {
     /// Whether it has a function that computes something.
     pub(crate) fn computes(&self, name: &str) -> bool {
         self.functions.iter().any(|function| function.sig.ident == name)
+    }
+
+    /// The numbers that `joint_start` returns: constants, each.
+    pub(crate) fn joint_start(&self) -> Result<Vec<f64>, Error> {
+        let function = self.functions.iter().find(|function| function.sig.ident == "joint_start");
+        let last = function.and_then(|function| function.block.stmts.last());
+        let Some(Stmt::Expr(Expr::Array(array), None)) = last else { return Ok(Vec::new()) };
+        array.elems.iter().map(constant).collect()
     }
 
     fn implementation(&mut self, item: ItemImpl) -> Result<(), Error> {
@@ -191,6 +199,19 @@ pub(crate) fn whole(expr: &Expr) -> Result<usize, Error> {
         return Ok(number);
     }
     Err(Error::unknown("a whole number", expr))
+}
+
+/// A number as it is written: `k(1.5)`, `k(-1.5)`.
+fn constant(expr: &Expr) -> Result<f64, Error> {
+    match expr {
+        Expr::Call(call) if call.args.len() == 1 => constant(&call.args[0]),
+        Expr::Unary(minus) if matches!(minus.op, UnOp::Neg(_)) => Ok(-constant(&minus.expr)?),
+        Expr::Lit(literal) => match &literal.lit {
+            Lit::Float(number) => number.base10_parse().map_err(|_| Error::unknown("a number", expr)),
+            _ => Err(Error::unknown("a number", expr)),
+        },
+        _ => Err(Error::unknown("a number", expr)),
+    }
 }
 
 #[derive(Default)]

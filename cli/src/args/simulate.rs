@@ -202,7 +202,7 @@ fn when(text: &str) -> Result<When, String> {
         .map_err(|()| "steps=K or violation=SIZE was expected, such as steps=5 or violation=1e-10".to_owned())
 }
 
-fn tolerance(text: &str) -> Result<f64, String> {
+pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value <= 1.0 => Ok(value),
         _ => Err("a number above 0 and at most 1 was expected, such as 1e-9".to_owned()),

@@ -1,0 +1,104 @@
+//! A functional mock-up unit: sources, library and description in one archive.
+
+use super::{Scratch, run, say};
+use crate::args::{CosimulationMethod, FmuArgs};
+use crate::columns;
+use crate::failure::Failure;
+use crate::generate::{Asked, modules};
+use crate::progress::Spinner;
+use crate::scene;
+use crate::write::{self, Known};
+use gyro_export::fmu::{Fmu, Method, OPTIONS, Settings, fmu as written};
+use std::ffi::{OsStr, OsString};
+use std::io::{self, Cursor, Write as _};
+use std::path::Path;
+use std::{env, fs};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+/// Writes the archive.
+pub(super) fn fmu(args: &FmuArgs) -> Result<(), Failure> {
+    write::check(&args.out, Known::Record)?;
+    let model = scene::read(&args.model)?;
+    let mut functions = vec!["solvers".to_owned()];
+    if !model.outputs.is_empty() {
+        functions.extend(["joint_outputs", "output_derivatives"].map(str::to_owned));
+    }
+    let asked = |_: &Path| Asked::Here(functions.clone());
+    let made = modules(std::slice::from_ref(&args.model), &asked, args.strict).pop();
+    let module = made.expect("one model file gives one module")?;
+    let method = match args.integrator {
+        CosimulationMethod::Tsit5 => Method::Tsit5,
+        CosimulationMethod::Dop853 => Method::Dop853,
+        CosimulationMethod::Rodas4 => Method::Rodas4,
+    };
+    let inputs = (0..model.inputs.len()).map(|input| columns::input_unit(&model, input).to_owned());
+    let outputs = columns::outputs(&model).into_iter().map(|(name, unit)| (name, unit.to_owned()));
+    let settings = Settings {
+        token: format!(
+            "{{{}}}",
+            write::digest(format!("{}{method:?}{:?}", module.code, args.tolerance).as_bytes())
+        ),
+        method,
+        tolerance: args.tolerance,
+        input_units: inputs.collect(),
+        outputs: outputs.collect(),
+    };
+    let unit = written(&model, &module.code, &settings)
+        .map_err(|e| Failure::Usage(format!("{}: no FMU can be made: {e}", args.model.display())))?;
+    let library = if args.sources_only { None } else { Some(library(&unit)?) };
+    let archive = archive(&unit, library.as_deref())
+        .map_err(|e| Failure::Run(format!("{}: {e}", args.out.display())))?;
+    let is_new = write::write(&args.out, archive, Known::Record)?;
+    say(&format!("{} {}", if is_new { "wrote" } else { "fresh already:" }, args.out.display()));
+    Ok(())
+}
+
+/// The platform's name in FMI, and what its libraries end with.
+fn platform() -> (String, &'static str) {
+    let system = match env::consts::OS {
+        "macos" => "darwin",
+        other => other,
+    };
+    (format!("{}-{system}", env::consts::ARCH), env::consts::DLL_SUFFIX)
+}
+
+/// The bytes of the library for this platform.
+fn library(unit: &Fmu) -> Result<Vec<u8>, Failure> {
+    let spinner = Spinner::new(format!("compiling {}", unit.identifier));
+    let folder = Scratch::new()?;
+    let failed = |path: &Path, e: &io::Error| Failure::Run(format!("{}: {e}", path.display()));
+    for (path, text) in &unit.files {
+        let path = folder.0.join(path);
+        let made = path.parent().map_or(Ok(()), fs::create_dir_all);
+        made.and_then(|()| fs::write(&path, text)).map_err(|e| failed(&path, &e))?;
+    }
+    let library = folder.0.join("library");
+    let sources: Vec<OsString> =
+        unit.sources.iter().map(|source| folder.0.join(source).into_os_string()).collect();
+    let mut arguments: Vec<&OsStr> = OPTIONS.iter().map(OsStr::new).collect();
+    arguments.extend(["-fPIC", "-shared", "-fvisibility=hidden", "-o"].map(OsStr::new));
+    arguments.push(library.as_os_str());
+    arguments.extend(sources.iter().map(OsString::as_os_str));
+    arguments.push(OsStr::new("-lm"));
+    let cc = env::var_os("CC").unwrap_or_else(|| "cc".into());
+    run(&cc, &arguments, "CC", "give --sources-only")?;
+    drop(spinner);
+    fs::read(&library).map_err(|e| failed(&library, &e))
+}
+
+/// All of it in one file, the same bytes each time.
+fn archive(unit: &Fmu, library: Option<&[u8]>) -> zip::result::ZipResult<Vec<u8>> {
+    let options = SimpleFileOptions::DEFAULT.compression_method(CompressionMethod::Deflated);
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    for (path, text) in &unit.files {
+        archive.start_file(path, options)?;
+        archive.write_all(text.as_bytes())?;
+    }
+    if let Some(library) = library {
+        let (platform, suffix) = platform();
+        archive.start_file(format!("binaries/{platform}/{}{suffix}", unit.identifier), options.unix_permissions(0o755))?;
+        archive.write_all(library)?;
+    }
+    Ok(archive.finish()?.into_inner())
+}
