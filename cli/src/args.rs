@@ -1,8 +1,8 @@
 //! The command line's arguments.
 
+mod begin;
 mod export;
 mod show;
-mod begin;
 mod simulate;
 
 use clap::{Args, Parser, Subcommand};
@@ -10,9 +10,9 @@ use gyro_verifier::Seed;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+pub(crate) use begin::{CheckArgs, NewArgs, Template};
 pub(crate) use export::{CArgs, CosimulationMethod, ExportArgs, FmuArgs, Target};
 pub(crate) use show::{Change, ShowArgs};
-pub(crate) use begin::{CheckArgs, NewArgs, Template};
 pub(crate) use simulate::{Engine, InputSetting, Precision, SimulateArgs};
 
 /// The exit codes of every command.

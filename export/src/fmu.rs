@@ -128,7 +128,8 @@ impl<'a> Unit<'a> {
         }
         let has_jacobian = computes(&["joint_jacobian"]);
         let has_slopes = has_jacobian
-            && (!has_outputs || computes(&["outputs_by_state", "outputs_by_accelerations", "outputs_by_inputs"]));
+            && (!has_outputs
+                || computes(&["outputs_by_state", "outputs_by_accelerations", "outputs_by_inputs"]));
         let time = Variable {
             unit: Some("s".to_owned()),
             initial: None,
@@ -306,29 +307,31 @@ impl<'a> Unit<'a> {
 
     fn build(&self, xml: &mut Xml) -> io::Result<()> {
         let name = self.model.name.as_str();
-        xml.create_element("fmiBuildDescription").with_attribute(("fmiVersion", "3.0")).write_inner_content(|xml| {
-            xml.create_element("BuildConfiguration").with_attribute(("modelIdentifier", name)).write_inner_content(
-                |xml| {
-                    xml.create_element("SourceFileSet")
-                        .with_attributes([
-                            ("language", "C99"),
-                            ("compiler", "gcc"),
-                            ("compilerOptions", OPTIONS.join(" ").as_str()),
-                        ])
-                        .write_inner_content(|xml| {
-                            for file in ["fmi3.c".to_owned(), format!("{name}.c")] {
-                                xml.create_element("SourceFile")
-                                    .with_attribute(("name", file.as_str()))
-                                    .write_empty()?;
-                            }
-                            Ok(())
-                        })?;
-                    xml.create_element("Library").with_attribute(("name", "m")).write_empty()?;
-                    Ok(())
-                },
-            )?;
-            Ok(())
-        })?;
+        xml.create_element("fmiBuildDescription").with_attribute(("fmiVersion", "3.0")).write_inner_content(
+            |xml| {
+                xml.create_element("BuildConfiguration")
+                    .with_attribute(("modelIdentifier", name))
+                    .write_inner_content(|xml| {
+                        xml.create_element("SourceFileSet")
+                            .with_attributes([
+                                ("language", "C99"),
+                                ("compiler", "gcc"),
+                                ("compilerOptions", OPTIONS.join(" ").as_str()),
+                            ])
+                            .write_inner_content(|xml| {
+                                for file in ["fmi3.c".to_owned(), format!("{name}.c")] {
+                                    xml.create_element("SourceFile")
+                                        .with_attribute(("name", file.as_str()))
+                                        .write_empty()?;
+                                }
+                                Ok(())
+                            })?;
+                        xml.create_element("Library").with_attribute(("name", "m")).write_empty()?;
+                        Ok(())
+                    })?;
+                Ok(())
+            },
+        )?;
         Ok(())
     }
 
@@ -348,7 +351,8 @@ impl<'a> Unit<'a> {
             );
         }
         let name = escape(&self.model.name);
-        let derivatives = if self.has_jacobian { "Directional derivatives are generated, not differences." } else { "" };
+        let derivatives =
+            if self.has_jacobian { "Directional derivatives are generated, not differences." } else { "" };
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}</title></head><body>\n\
              <h1>{name}</h1>\n<p>A mechanism in joint coordinates, written by gyro-sim: model exchange and co-simulation, \
@@ -393,7 +397,9 @@ fn states(model: &Model, module: &Module) -> Vec<(String, String)> {
     const AXES: [&str; 3] = ["x", "y", "z"];
     let of_place = |kind: &str, place: usize| {
         let found = module.indices.iter().find(|(path, at)| path[0] == kind && *at == place);
-        found.and_then(|(path, _)| path.last()).map_or_else(|| format!("{kind}{place}"), |name| name.to_lowercase())
+        found
+            .and_then(|(path, _)| path.last())
+            .map_or_else(|| format!("{kind}{place}"), |name| name.to_lowercase())
     };
     let (mut coordinates, mut rates) = (Vec::new(), Vec::new());
     for place in &module.places {
@@ -485,8 +491,12 @@ fn number(value: f64) -> String {
 fn written(content: impl FnOnce(&mut Xml) -> io::Result<()>) -> Result<String, Error> {
     let failed = |e: io::Error| Error(format!("a document: {e}"));
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
-    xml.write_event(quick_xml::events::Event::Decl(quick_xml::events::BytesDecl::new("1.0", Some("UTF-8"), None)))
-        .map_err(failed)?;
+    xml.write_event(quick_xml::events::Event::Decl(quick_xml::events::BytesDecl::new(
+        "1.0",
+        Some("UTF-8"),
+        None,
+    )))
+    .map_err(failed)?;
     content(&mut xml).map_err(failed)?;
     xml.write_event(quick_xml::events::Event::Text(BytesText::new("\n"))).map_err(failed)?;
     String::from_utf8(xml.into_inner()).map_err(|e| Error(format!("a document: {e}")))

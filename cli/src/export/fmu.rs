@@ -97,7 +97,10 @@ fn archive(unit: &Fmu, library: Option<&[u8]>) -> zip::result::ZipResult<Vec<u8>
     }
     if let Some(library) = library {
         let (platform, suffix) = platform();
-        archive.start_file(format!("binaries/{platform}/{}{suffix}", unit.identifier), options.unix_permissions(0o755))?;
+        archive.start_file(
+            format!("binaries/{platform}/{}{suffix}", unit.identifier),
+            options.unix_permissions(0o755),
+        )?;
         archive.write_all(library)?;
     }
     Ok(archive.finish()?.into_inner())
