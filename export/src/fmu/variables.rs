@@ -101,7 +101,7 @@ impl Variable {
     }
 }
 
-/// Name and unit of each number of the joint state.
+/// Name and unit of each number of the joint state, as the table of a run names them.
 fn states(model: &Model, module: &Module) -> Vec<(String, String)> {
     const EULER: [&str; 4] = ["e0", "e1", "e2", "e3"];
     const AXES: [&str; 3] = ["x", "y", "z"];
@@ -115,7 +115,7 @@ fn states(model: &Model, module: &Module) -> Vec<(String, String)> {
     for place in &module.places {
         let at = coordinates.len();
         let parts = |to: &mut Vec<(String, String)>, name: &str, parts: &[&str], unit: &str| {
-            to.extend(parts.iter().map(|part| (format!("{name}.{part}"), unit.to_owned())));
+            to.extend(parts.iter().map(|part| (format!("{name} {part}"), unit.to_owned())));
         };
         match *place {
             Place::Scalar { joint, coordinate } => {
@@ -126,20 +126,20 @@ fn states(model: &Model, module: &Module) -> Vec<(String, String)> {
                     _ => format!("{}.{}", model.joints[joint].name, kind.name()),
                 };
                 let [unit, rate] = if kind.is_angle() { ["rad", "rad/s"] } else { ["m", "m/s"] };
-                rates.push((format!("{name}.rate"), rate.to_owned()));
+                rates.push((format!("{name} rate"), rate.to_owned()));
                 coordinates.push((name, unit.to_owned()));
             }
             Place::Orientation => {
                 let name = of_place("joint", at);
                 parts(&mut coordinates, &name, &EULER, "1");
-                parts(&mut rates, &format!("{name}.angular velocity"), &AXES, "rad/s");
+                parts(&mut rates, &format!("{name} rate"), &AXES, "rad/s");
             }
             Place::Body => {
                 let name = of_place("body", at);
                 parts(&mut coordinates, &name, &AXES, "m");
                 parts(&mut coordinates, &name, &EULER, "1");
-                parts(&mut rates, &format!("{name}.velocity"), &AXES, "m/s");
-                parts(&mut rates, &format!("{name}.angular velocity"), &AXES, "rad/s");
+                parts(&mut rates, &format!("{name} velocity"), &AXES, "m/s");
+                parts(&mut rates, &format!("{name} angular velocity"), &["x'", "y'", "z'"], "rad/s");
             }
         }
     }
