@@ -23,17 +23,20 @@ pub(crate) fn program() -> &'static str {
     NAME.get().map_or("gyro", String::as_str)
 }
 
-/// A parser's command with the program's name in the help of each of its subcommands.
+/// A parser's command with the program's name in the help of each of its subcommands, and of theirs.
 #[must_use]
 pub fn named(command: Command) -> Command {
     let name = name_of(&command);
-    command.mut_subcommands(|subcommand| match subcommand.get_after_help() {
-        Some(help) => {
-            let help = help.to_string().replace(PROGRAM, &name);
-            subcommand.after_help(help)
-        }
-        None => subcommand,
-    })
+    command.mut_subcommands(|subcommand| filled(subcommand, &name))
+}
+
+fn filled(command: Command, name: &str) -> Command {
+    let help = command.get_after_help().map(|help| help.to_string().replace(PROGRAM, name));
+    let command = match help {
+        Some(help) => command.after_help(help),
+        None => command,
+    };
+    command.mut_subcommands(|subcommand| filled(subcommand, name))
 }
 
 fn name_of(command: &Command) -> String {

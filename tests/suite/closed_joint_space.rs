@@ -209,8 +209,9 @@ macro_rules! checked {
     };
 }
 
-const CHECKED: [Check; 25] = checked![
+const CHECKED: [Check; 26] = checked![
     "all-joints"
+    "armature"
     "cam"
     "carried-four-bar"
     "differential"

@@ -46,6 +46,7 @@ macro_rules! mechanisms {
 mechanisms! {
     $
     "all-joints" new own::all_joints::AllJoints,
+    "armature" new own::armature::Armature,
     "cam" new own::cam::Cam,
     "carried" new own::carried::Carried,
     "carried-block" new own::carried_block::CarriedBlock,

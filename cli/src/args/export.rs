@@ -6,6 +6,9 @@ use std::path::PathBuf;
 
 /// Write a mechanism with its solver for other languages and tools
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  {program} export c models/four-bar.toml --out out/four-bar
+  {program} export fmu models/four-bar.toml --out out/four-bar.fmu")]
 pub struct ExportArgs {
     #[command(subcommand)]
     pub(crate) target: Target,
