@@ -57,7 +57,16 @@ const SOURCES: &str = "sources";
 /// What the sources are to be compiled with, so that the bits are Rust's.
 pub const OPTIONS: &[&str] = &["-std=c99", "-O2", "-ffp-contract=off"];
 
-const WRAPPER: &str = include_str!("../c/fmi/fmi3.c");
+/// The interface, part for part.
+const WRAPPER: [&str; 7] = [
+    include_str!("../c/fmi/instances.c"),
+    include_str!("../c/fmi/variables.c"),
+    include_str!("../c/fmi/whole_state.c"),
+    include_str!("../c/fmi/derivatives.c"),
+    include_str!("../c/fmi/absent.c"),
+    include_str!("../c/fmi/exchange.c"),
+    include_str!("../c/fmi/cosimulation.c"),
+];
 const HEADERS: [(&str, &str); 3] = [
     ("fmi3PlatformTypes.h", include_str!("../c/fmi/fmi3PlatformTypes.h")),
     ("fmi3FunctionTypes.h", include_str!("../c/fmi/fmi3FunctionTypes.h")),
@@ -152,7 +161,7 @@ impl<'a> Unit<'a> {
             let _ = writeln!(text, "#define FMU_{name} {value}");
         }
         let _ = write!(text, "\ntypedef {} fmu_mechanism;\n\n", names.prefix);
-        text + &names.applied(WRAPPER)
+        text + &names.applied(&WRAPPER.concat())
     }
 
     fn description(&self, xml: &mut Xml) -> io::Result<()> {
