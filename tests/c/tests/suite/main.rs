@@ -5,3 +5,4 @@ mod docs;
 mod hostile;
 mod program;
 mod proof;
+mod unit;
