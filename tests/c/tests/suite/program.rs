@@ -17,7 +17,7 @@ pub(crate) fn model_and_module(page: &str, functions: Option<&[&str]>) -> (Model
     let text = fs::read_to_string(&path).expect("a model file");
     let mut load = |table: &str| fs::read_to_string(path.with_file_name(table)).map_err(|e| e.to_string());
     let model = gyro_model::read_with(page, &text, &mut load).expect("no mistakes");
-    let named = |names: Vec<&str>| Functions::named(names.into_iter()).expect("known");
+    let named = |names: Vec<&str>| Functions::named(names).expect("known");
     let functions = match (functions, &model.functions) {
         (Some(names), _) => named(names.to_vec()),
         (None, Some(names)) => named(names.iter().map(String::as_str).collect()),

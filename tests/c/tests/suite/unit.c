@@ -17,7 +17,7 @@
 
 enum { N = GYRO_N_JOINTS, STEPS = 20 };
 
-static const double step = 0.01;
+static const double step = 0.1;
 
 static int do_step(fmi3Instance unit, int k)
 {
