@@ -10,7 +10,7 @@ use gyro_verifier::Seed;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-pub(crate) use begin::{CheckArgs, NewArgs, Template};
+pub(crate) use begin::{CheckArgs, NewArgs, SchemaArgs, Template};
 pub(crate) use export::{CArgs, CosimulationMethod, ExportArgs, FmuArgs, Target};
 pub(crate) use show::{Change, ShowArgs};
 pub(crate) use simulate::{Engine, InputSetting, Precision, SimulateArgs};
@@ -36,6 +36,7 @@ pub struct Cli {
 pub enum Command {
     New(NewArgs),
     Check(CheckArgs),
+    Schema(SchemaArgs),
     Generate(GenerateArgs),
     Simulate(SimulateArgs),
     Show(ShowArgs),

@@ -31,6 +31,7 @@ mod report;
 mod rounding;
 mod runs;
 mod scene;
+mod schema;
 mod show;
 mod simulate;
 mod spectrum;
@@ -56,6 +57,7 @@ impl Command {
         match self {
             Self::New(args) => new::new(args),
             Self::Check(args) => check::check(args),
+            Self::Schema(args) => schema::schema(args),
             Self::Generate(args) => generate::generate(args),
             Self::Simulate(args) => simulate::simulate(args),
             Self::Show(args) => show::show(args),

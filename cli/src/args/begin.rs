@@ -1,4 +1,4 @@
-//! Arguments of the commands with which a mechanism begins: `new` and `check`.
+//! Arguments of the commands with which a mechanism begins: `new`, `check` and `schema`.
 
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -54,4 +54,18 @@ pub struct CheckArgs {
     /// Draw the skeleton at the start: joints, and the bodies as lines between them
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) svg: Option<PathBuf>,
+}
+
+/// Write the JSON schema of model files, by which editors complete and check them
+///
+/// An editor's TOML support reads it: put `#:schema ./model.schema.json` in the first line of a model file beside it.
+/// See docs/model-format.md.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  {program} schema                                prints it
+  {program} schema --out model.schema.json")]
+pub struct SchemaArgs {
+    /// Where to write it [default: to the screen]
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) out: Option<PathBuf>,
 }

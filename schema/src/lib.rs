@@ -1,0 +1,202 @@
+//! The JSON schema of model files, for editors that complete and check them while they are written.
+//!
+//! It knows keys, types, words and what must be there; what depends on several keys is the reader's to say (`gyro
+//! check`). The types are a description and hold nothing.
+#![deny(missing_docs)]
+
+mod elements;
+mod numbers;
+
+use elements::{Coupler, Driver, Force, Joint, Output};
+use numbers::{Name, Number, Orientation, Plain, Vector};
+use schemars::JsonSchema;
+use std::collections::BTreeMap;
+
+/// The schema as the text of `model.schema.json`.
+pub fn schema() -> String {
+    let schema = schemars::schema_for!(Model);
+    let text = serde_json::to_string_pretty(&schema).expect("a schema is a value of JSON");
+    text + "\n"
+}
+
+/// A mechanism for gyro-sim. All units are SI.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[expect(dead_code, reason = "a description")]
+struct Model {
+    /// Version of the format.
+    #[schemars(range(min = 1, max = 1))]
+    format: u8,
+    /// Name of the mechanism and of the generated module.
+    name: Name,
+    /// Acceleration of gravity, m/s², global frame.
+    gravity: Option<Vector>,
+    /// Whether the state carries the work of what is not conservative.
+    count_work: Option<bool>,
+    simulation: Option<Simulation>,
+    generate: Option<Generate>,
+    /// Numbers that stay tunable, with their defaults, or expressions of other parameters.
+    parameters: Option<BTreeMap<String, Number>>,
+    /// Numbers that the caller sets at every step, with their values until then.
+    inputs: Option<BTreeMap<String, Plain>>,
+    #[schemars(length(min = 1))]
+    body: Vec<Body>,
+    joint: Option<Vec<Joint>>,
+    coupler: Option<Vec<Coupler>>,
+    driver: Option<Vec<Driver>>,
+    force: Option<Vec<Force>>,
+    output: Option<Vec<Output>>,
+}
+
+/// How a run is made unless told otherwise.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[expect(dead_code, reason = "a description")]
+struct Simulation {
+    /// Length of the run, s.
+    t_end: Option<Plain>,
+    /// Largest step of the integrator, s.
+    step: Option<Plain>,
+    /// Interval between corrections, s.
+    correct_every: Option<Plain>,
+    /// Interval between samples, s.
+    sample_every: Option<Plain>,
+    method: Option<Method>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "snake_case")]
+#[expect(dead_code, reason = "a description")]
+enum Method {
+    /// Coordinate partitioning.
+    Partitioned,
+    /// Integration of eq. (17) alone.
+    Direct,
+}
+
+/// What the generated module has.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[expect(dead_code, reason = "a description")]
+struct Generate {
+    /// Functions by their names or by groups.
+    functions: Option<Vec<String>>,
+}
+
+/// A rigid body. Its frame has its origin at the mass centre.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[expect(dead_code, reason = "a description")]
+struct Body {
+    name: Name,
+    /// Held and folded into the formulas; or "constrained": by rows on coordinates of its own.
+    fixed: Option<Fixed>,
+    /// Floats: no joint leads to it from a fixed body.
+    free: Option<bool>,
+    driven: Option<Driven>,
+    /// Mass, kg.
+    mass: Option<Number>,
+    /// Inertia tensor about the mass centre, kg·m².
+    inertia: Option<Inertia>,
+    /// Point masses that belong to the body.
+    point_mass: Option<Vec<PointMass>>,
+    /// Position of the mass centre, m, global frame.
+    position: Option<Vector>,
+    /// Euler parameters, of any length.
+    orientation: Option<Orientation>,
+    /// Start: velocity of the mass centre, m/s, global frame.
+    velocity: Option<Vector>,
+    /// Start: absolute angular velocity, rad/s, body's frame.
+    angular_velocity: Option<Vector>,
+    /// How strongly the assembly of the start holds the body near its guess.
+    assembly_weight: Option<Plain>,
+    /// What it looks like; nothing is computed of it.
+    shape: Option<Vec<Shape>>,
+}
+
+/// A box, a cylinder or a sphere.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[expect(dead_code, reason = "a description")]
+struct Shape {
+    /// Lengths of the sides, m.
+    #[schemars(rename = "box")]
+    sides: Option<Vector>,
+    /// Radius and length along z, m.
+    cylinder: Option<[Number; 2]>,
+    /// Radius, m.
+    sphere: Option<Number>,
+    /// Its centre, m, in the body's frame.
+    position: Option<Vector>,
+    /// Euler parameters in the body's frame, of any length.
+    orientation: Option<Orientation>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[expect(dead_code, reason = "a description")]
+enum Fixed {
+    Flag(bool),
+    Word(FixedWord),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "snake_case")]
+#[expect(dead_code, reason = "a description")]
+enum FixedWord {
+    Constrained,
+}
+
+/// The body's whole motion, prescribed in time.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[expect(dead_code, reason = "a description")]
+struct Driven {
+    /// Displacement of the mass centre, m, global frame.
+    translation: Option<[numbers::Motion; 3]>,
+    /// Rotations, each about an axis that the ones before it have turned.
+    rotations: Option<Vec<Rotation>>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[expect(dead_code, reason = "a description")]
+struct Rotation {
+    axis: Vector,
+    /// Angle, rad.
+    angle: numbers::Motion,
+}
+
+/// Three moments, a table of elements, or a symmetric matrix.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[expect(dead_code, reason = "a description")]
+enum Inertia {
+    Moments(Vector),
+    Matrix([Vector; 3]),
+    Elements(Elements),
+}
+
+/// Elements of the tensor: `xy` is −∫ x y dm.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[expect(dead_code, reason = "a description")]
+struct Elements {
+    xx: Number,
+    yy: Number,
+    zz: Number,
+    xy: Option<Number>,
+    xz: Option<Number>,
+    yz: Option<Number>,
+}
+
+/// A mass at a point of a body: the mass centre moves, what is given in the body's frame stays.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[expect(dead_code, reason = "a description")]
+struct PointMass {
+    /// Mass, kg.
+    mass: Number,
+    /// Where it is, m, in the body's frame.
+    at: Vector,
+}
