@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Fetches the tools of `cargo xtask embedded`: a compiler for bare machines, linkers, QEMU, gcc for Arm, and Node.
+# Fetches the tools of `cargo xtask embedded` and of the tests of exported C: compilers for bare machines, for Arm and for
+# WebAssembly, linkers, QEMU, and Node.
 #
 # They are Debian's packages (of Debian 12, where `rustc-web` is), unpacked into a folder of this clone. Nothing is installed, nothing
 # is removed, and root is not needed: the package lists are kept in that folder too. `cargo clean` removes all of it.
@@ -8,10 +9,13 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-PACKAGES=(rustc-web cargo-web rust-web-src lld qemu-system-arm gcc-arm-none-eabi nodejs)
-COMMANDS=(rustc cargo ld.lld wasm-ld qemu-system-arm arm-none-eabi-gcc arm-none-eabi-objdump node)
-# Documentation, and libraries for chips of other kinds.
-UNUSED=('./usr/share/doc/*' './usr/lib/gcc/arm-none-eabi/*/thumb/*' './usr/lib/gcc/arm-none-eabi/*/arm/*')
+PACKAGES=(rustc-web cargo-web rust-web-src clang lld qemu-system-arm gcc-arm-none-eabi
+    libnewlib-arm-none-eabi nodejs)
+COMMANDS=(rustc cargo clang ld.lld wasm-ld qemu-system-arm arm-none-eabi-gcc arm-none-eabi-objdump node)
+# Documentation, and libraries for chips of other kinds than a Cortex-M7.
+OTHERS=({arm,thumb/{nofp,'v6*',v7,'v7[+-]*',v7e-m,v7e-m+fp,'v7ve*','v8*'}})
+UNUSED=('./usr/share/doc/*' "${OTHERS[@]/#/./usr/lib/gcc/arm-none-eabi/*/}"
+    "${OTHERS[@]/#/./usr/lib/arm-none-eabi/newlib/}")
 
 tools=${1:-${CARGO_TARGET_DIR:-target}/embedded/tools}
 mkdir -p "$tools"/{root,bin,lists/partial,archives/partial}
@@ -47,7 +51,13 @@ unpack() {
 launcher() {
     local command=$1 program=$root/usr/bin/$1 options=''
     [ -e "$program" ] || program=$(PATH=/usr/bin:/bin command -v "$command") || fail "$command has not come with the packages"
-    case $command in rustc) [ "${program#"$root"}" = "$program" ] || options="--sysroot '$root/usr'" ;; esac
+    if [ "${program#"$root"}" != "$program" ]; then
+        case $command in
+        rustc) options="--sysroot '$root/usr'" ;;
+        # Where Debian's gcc has newlib.
+        arm-none-eabi-gcc) options="-idirafter '$root/usr/include/newlib' -B '$root/usr/lib/arm-none-eabi/newlib/'" ;;
+        esac
+    fi
     local multiarch; multiarch=$(dpkg --print-architecture | sed 's/amd64/x86_64/; s/arm64/aarch64/')-linux-gnu
     cat > "$tools/bin/$command" <<END
 #!/bin/sh

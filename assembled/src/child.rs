@@ -20,7 +20,18 @@ pub fn main(model: &Model, form: Form, precision: Precision) -> ExitCode {
     })
 }
 
-fn answer<M: motion::Maximal + 'static>(
+/// The same with the names of form and precision: `recursive`, `careful` or `dense`; `f32` or `f64`.
+pub fn main_by_names(model: &Model, form: &str, precision: &str) -> ExitCode {
+    let form = match form {
+        "recursive" => Form::Recursive,
+        "careful" => Form::Careful,
+        _ => Form::Dense,
+    };
+    let precision = if precision == "f32" { Precision::Single } else { Precision::Double };
+    main(model, form, precision)
+}
+
+fn answer<M: motion::Maximal + Clone + 'static>(
     mechanism: Result<M, BuildError>,
     request: &Request,
     output: &mut dyn Write,

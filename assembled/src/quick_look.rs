@@ -4,7 +4,7 @@
 use crate::{BuildError, Careful, Dense, Recursive};
 use gyro_model::Model;
 use gyro_runner::{Approach, Event, Failure, Settings, Start, Summary, motion, run_by};
-use std::fmt;
+use std::{fmt, io};
 
 /// Which form of assembled mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,8 +54,8 @@ impl fmt::Display for QuickLookError {
 
 impl std::error::Error for QuickLookError {}
 
-/// Runs an assembled model to a schedule; `tell` receives samples and progress. [`Form::for_model`] picks the form that
-/// suits a model.
+/// Runs an assembled model to a schedule; `tell` receives samples and progress, and ends the run by an error.
+/// [`Form::for_model`] picks the form that suits a model.
 ///
 /// # Errors
 /// [`QuickLookError`]; the samples up to a failure have been told.
@@ -64,7 +64,7 @@ pub fn quick_look(
     (form, precision): (Form, Precision),
     plan: (&Settings, &Approach),
     start: &Start,
-    tell: &mut dyn FnMut(Event<'_>),
+    tell: &mut dyn FnMut(Event<'_>) -> io::Result<()>,
 ) -> Result<Summary, QuickLookError> {
     match (form, precision) {
         (Form::Careful, Precision::Single) => simulate(Careful::<f32>::new(model), plan, start, tell),
@@ -76,16 +76,12 @@ pub fn quick_look(
     }
 }
 
-fn simulate<M: motion::Maximal + 'static>(
+fn simulate<M: motion::Maximal + Clone + 'static>(
     mechanism: Result<M, BuildError>,
     plan: (&Settings, &Approach),
     start: &Start,
-    tell: &mut dyn FnMut(Event<'_>),
+    tell: &mut dyn FnMut(Event<'_>) -> io::Result<()>,
 ) -> Result<Summary, QuickLookError> {
     let mut mechanism = mechanism.map_err(QuickLookError::Start)?;
-    let told = |event: Event<'_>| {
-        tell(event);
-        Ok(())
-    };
-    run_by(&mut mechanism, &motion::Projecting, plan, start, told).map_err(QuickLookError::Run)
+    run_by(&mut mechanism, &motion::Projecting, plan, start, tell).map_err(QuickLookError::Run)
 }

@@ -7,8 +7,9 @@ use gyro_reference::scene;
 use gyro_sim::{
     CloseLoops, Control, Correction, Dop853, Error, Joint, JointSpace, Kutta4, Ode, Partition, Solver,
 };
-use gyro_yardstick::{FourBar, SliderCrank, processor_time};
+use gyro_yardstick::{FourBar, SliderCrank};
 use std::hint::black_box;
+use std::time::Instant;
 
 /// Rounds of which the median counts, and calls in each.
 const ROUNDS: usize = 41;
@@ -19,9 +20,9 @@ fn medians<const N: usize>(calls: usize, actions: &mut [&mut dyn FnMut(); N]) ->
     let mut times = [(); N].map(|()| Vec::new());
     for _ in 0..ROUNDS {
         for (times, action) in times.iter_mut().zip(actions.iter_mut()) {
-            let began = processor_time();
+            let began = Instant::now();
             (0..calls).for_each(|_| action());
-            times.push((processor_time() - began).as_secs_f64() / calls as f64);
+            times.push(began.elapsed().as_secs_f64() / calls as f64);
         }
     }
     times.map(|mut times| {

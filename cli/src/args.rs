@@ -4,6 +4,7 @@ mod begin;
 mod export;
 mod show;
 mod simulate;
+mod sweep;
 
 use clap::{Args, Parser, Subcommand};
 use gyro_verifier::Seed;
@@ -11,24 +12,52 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 pub(crate) use begin::{CheckArgs, NewArgs, SchemaArgs, Template};
-pub(crate) use export::{CArgs, CosimulationMethod, ExportArgs, FmuArgs, Target};
+pub(crate) use export::{CArgs, CosimulationMethod, ExportArgs, FmuArgs, Target, WasmArgs};
 pub(crate) use show::{Change, ShowArgs};
-pub(crate) use simulate::{Engine, InputSetting, Precision, SimulateArgs};
+pub(crate) use simulate::{Effort, Engine, InputSetting, Precision, SimulateArgs};
+pub(crate) use sweep::{MergeArgs, Shard, SweepArgs, SweepCommand};
 
 /// The exit codes of every command.
 pub const EXIT_CODES: &str = "Exit codes:
   0  success
   1  the request was valid but failed: a run that ends early, a refuted proof, a stale file under --check
   2  the request was invalid: an option, a model file or another file; nothing was started
-  3  the run completed, but its result is worthless; files and figures are written nevertheless";
+  3  the run completed, but its result is worthless; files and figures are written nevertheless
+  130  interrupted by Ctrl-C; a run has kept what it had computed";
+
+/// The version, and the commit that this program was built from.
+pub const VERSION: &str = match env!("GYRO_COMMIT").is_empty() {
+    true => env!("CARGO_PKG_VERSION"),
+    false => concat!(env!("CARGO_PKG_VERSION"), " (", env!("GYRO_COMMIT"), ")"),
+};
 
 /// From a model file of bodies and joints to Rust code and to plots.
 #[derive(Debug, Parser)]
-#[command(name = "gyro", after_help = EXIT_CODES)]
+#[command(name = "gyro", version = VERSION, after_help = EXIT_CODES)]
 pub struct Cli {
+    /// What goes for all commands.
+    #[command(flatten)]
+    pub common: Common,
     /// The command to run.
     #[command(subcommand)]
     pub command: Command,
+}
+
+/// Options of all commands.
+#[derive(Debug, Args)]
+pub struct Common {
+    /// Print no notes and no progress on standard error; warnings and errors are printed
+    #[arg(long, short, global = true)]
+    quiet: bool,
+}
+
+impl Common {
+    /// Does what they ask for.
+    pub fn apply(&self) {
+        if self.quiet {
+            crate::remarks::be_quiet();
+        }
+    }
 }
 
 /// The commands.
@@ -39,12 +68,57 @@ pub enum Command {
     Schema(SchemaArgs),
     Generate(GenerateArgs),
     Simulate(SimulateArgs),
+    Sweep(SweepArgs),
     Show(ShowArgs),
     Export(ExportArgs),
     Inspect(InspectArgs),
     Import(ImportArgs),
     Verify(VerifyArgs),
     Report(ReportArgs),
+    Cache(CacheArgs),
+    Completions(CompletionsArgs),
+    #[command(hide = true)]
+    Answer(AnswerArgs),
+}
+
+/// Show where generated programs are built, or remove what was built
+///
+/// Runs of generated code are compiled in a folder of the user's cache, or in the one that the environment variable
+/// GYRO_CACHE names. What other versions of this program have built there is removed when they have not been used for
+/// a month.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  {program} cache
+  {program} cache --clear")]
+pub struct CacheArgs {
+    /// Remove all of it
+    #[arg(long)]
+    pub(crate) clear: bool,
+}
+
+/// Print completions of commands and options for a shell
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  {program} completions bash > ~/.local/share/bash-completion/completions/gyro
+  {program} completions zsh > ~/.zfunc/_gyro
+  {program} completions fish > ~/.config/fish/completions/gyro.fish")]
+pub struct CompletionsArgs {
+    /// The shell
+    #[arg(value_enum)]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+/// Answer requests on standard input with the runtime-assembled model: what `report` asks
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  {program} answer models/gyroscope.toml careful f64")]
+pub struct AnswerArgs {
+    /// Model file
+    pub(crate) model: PathBuf,
+    /// recursive, careful or dense
+    pub(crate) form: String,
+    /// f32 or f64
+    pub(crate) precision: String,
 }
 
 /// Write the Rust modules of models and their data sheets
@@ -221,7 +295,7 @@ mod tests {
     fn simulate(args: &[&str]) -> Result<SimulateArgs, String> {
         let all = ["gyro", "simulate", "x.toml"].iter().chain(args);
         match Cli::try_parse_from(all) {
-            Ok(Cli { command: Command::Simulate(args) }) => Ok(args),
+            Ok(Cli { command: Command::Simulate(args), .. }) => Ok(args),
             Ok(other) => Err(format!("{other:?}")),
             Err(error) => Err(error.to_string()),
         }
@@ -262,7 +336,7 @@ mod tests {
         assert_eq!(args.method, Some(MethodName::Direct));
         assert_eq!(args.set[0], ("m".to_owned(), parse_decimal("-0.1").unwrap()));
         assert_eq!(args.set[1], ("g".to_owned(), parse_decimal("10").unwrap()));
-        assert_eq!(args.input[0], ("motor".to_owned(), InputSetting::File(PathBuf::from("a=b.csv"))));
+        assert_eq!(args.input[0], ("motor".to_owned(), InputSetting::File(PathBuf::from("a=b.csv"), None)));
         assert_eq!(args.input[1], ("brake".to_owned(), InputSetting::Number(-1e-3)));
         assert!(args.strict);
     }
@@ -305,7 +379,7 @@ mod tests {
             (&["--correction", "baumgarte"], "such as baumgarte=100"),
             (&["--correct-when", "steps=0"], "such as steps=5"),
             (&["--step", "1e-3", "--tolerance", "1e-6"], "cannot be used with"),
-            (&["--engine", "steam"], "possible values: generated, assembled, dense, recursive"),
+            (&["--engine", "steam"], ", assembled, dense, recursive"),
             (&["--methd", "direct"], "--method"),
         ] {
             let found = simulate(args).unwrap_err();

@@ -9,42 +9,45 @@ use std::fmt::Write as _;
 
 /// A quantity that every sample has.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Column {
-    pub(crate) name: String,
-    pub(crate) unit: &'static str,
-    pub(crate) values: Vec<f64>,
+pub struct Column {
+    /// What it is.
+    pub name: String,
+    /// Its unit, `1` for a number without one.
+    pub unit: &'static str,
+    /// One value for each sample.
+    pub values: Vec<f64>,
 }
 
 /// A joint coordinate as it is shown; they come in the order of [`Sample::coordinates`].
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Shown {
+pub struct Shown {
     /// The joint's name, and the coordinate's if there are several: `table.x`.
-    pub(crate) name: String,
+    pub name: String,
     /// Index of the joint.
-    pub(crate) joint: usize,
+    pub joint: usize,
     /// What it is; `None` for an orientation.
-    pub(crate) kind: Option<CoordinateKind>,
+    pub kind: Option<CoordinateKind>,
 }
 
 impl Shown {
     /// Unit of a scalar coordinate.
-    pub(crate) fn unit(&self) -> &'static str {
+    pub fn unit(&self) -> &'static str {
         if self.kind.is_some_and(CoordinateKind::is_angle) { "rad" } else { "m" }
     }
 
     /// Whether it is an orientation, of four Euler parameters and three rates.
-    pub(crate) fn is_orientation(&self) -> bool {
+    pub fn is_orientation(&self) -> bool {
         self.kind.is_none()
     }
 
     /// Unit of its rate.
-    pub(crate) fn rate_unit(&self) -> &'static str {
+    pub fn rate_unit(&self) -> &'static str {
         if self.kind.is_some_and(CoordinateKind::is_angle) { "rad/s" } else { "m/s" }
     }
 }
 
 /// All joint coordinates of a model.
-pub(crate) fn coordinates(model: &Model) -> Vec<Shown> {
+pub fn coordinates(model: &Model) -> Vec<Shown> {
     let mut shown = Vec::new();
     for (joint, described) in model.joints.iter().enumerate() {
         let kinds = described.kind.coordinates();

@@ -3,6 +3,7 @@
 //! Everything is made in memory, and a library in a folder of its own, before anything is written.
 
 mod fmu;
+pub(crate) mod wasm;
 
 use crate::args::{CArgs, ExportArgs, Precision, Target};
 use crate::failure::Failure;
@@ -12,6 +13,7 @@ use crate::scene;
 use crate::write::{self, Known};
 use gyro_codegen::Module;
 use gyro_export::Exported;
+use gyro_model::Model;
 use std::ffi::{OsStr, OsString};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -22,6 +24,7 @@ use std::{env, fs, process};
 pub(crate) fn export(args: &ExportArgs) -> Result<(), Failure> {
     match &args.target {
         Target::C(args) => c(args),
+        Target::Wasm(args) => wasm::wasm(args),
         Target::Fmu(args) => fmu::fmu(args),
     }
 }
@@ -31,21 +34,11 @@ const LIBRARY_MARK: &str = "!<arch>\n";
 
 /// Header, source and, if it is asked for, the library.
 fn c(args: &CArgs) -> Result<(), Failure> {
-    let module = module(args)?;
+    let module = module(&args.model, args.functions.as_deref(), args.strict)?;
     let model = scene::read(&args.model)?;
-    let precision = match args.precision {
-        Precision::F32 => gyro_export::Precision::F32,
-        Precision::F64 => gyro_export::Precision::F64,
-    };
-    let exported = gyro_export::c(&model, &module.code, precision)
-        .map_err(|e| Failure::Run(format!("{}: {e}: please report it", args.model.display())))?;
-    let texts = (module.code.as_str(), module.constants.as_str());
-    gyro_verifier::same_in_c(&model, texts, (&exported.header, &exported.source)).map_err(|e| {
-        let page = args.model.display();
-        Failure::Run(format!(
-            "{page}: the C text is not what was proved: {e}: please report it with the model file"
-        ))
-    })?;
+    let exported = gyro_export::c(&model, &module.code, numbers(args.precision))
+        .map_err(|e| unwritten(&args.model, &e))?;
+    prove(&args.model, (&model, &module), &exported)?;
     let place = |name: String| args.out.join(name);
     let header = place(format!("{}.h", module.name));
     let source = place(format!("{}.c", module.name));
@@ -74,13 +67,36 @@ fn c(args: &CArgs) -> Result<(), Failure> {
 }
 
 /// The module, proved.
-fn module(args: &CArgs) -> Result<Module, Failure> {
-    let asked = |_: &Path| match &args.functions {
-        Some(names) => Asked::Here(names.clone()),
+fn module(path: &Path, functions: Option<&[String]>, strict: bool) -> Result<Module, Failure> {
+    let asked = |_: &Path| match functions {
+        Some(names) => Asked::Here(names.to_vec()),
         None => Asked::ThereOrSolvers,
     };
-    let made = modules(std::slice::from_ref(&args.model), &asked, args.strict).pop();
+    let made = modules(&[path.to_path_buf()], &asked, strict).pop();
     made.expect("one model file gives one module")
+}
+
+fn numbers(precision: Precision) -> gyro_export::Precision {
+    match precision {
+        Precision::F32 => gyro_export::Precision::F32,
+        Precision::F64 => gyro_export::Precision::F64,
+    }
+}
+
+fn unwritten(path: &Path, error: &gyro_export::Error) -> Failure {
+    Failure::Run(format!("{}: {error}: please report it", path.display()))
+}
+
+/// Whether the C text is what was proved of the module.
+fn prove(path: &Path, (model, module): (&Model, &Module), exported: &Exported) -> Result<(), Failure> {
+    let texts = (module.code.as_str(), module.constants.as_str());
+    match gyro_verifier::same_in_c(model, texts, (&exported.header, &exported.source)) {
+        Ok(_) => Ok(()),
+        Err(e) => Err(Failure::Run(format!(
+            "{}: the C text is not what was proved: {e}: please report it with the model file",
+            path.display()
+        ))),
+    }
 }
 
 /// The bytes of the library.

@@ -4,6 +4,9 @@ use gyro_model::Diagnostics;
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
+/// The exit status of a program that was interrupted, as shells have it.
+pub(crate) const INTERRUPTED: u8 = 130;
+
 /// Why a command failed.
 #[derive(Debug)]
 pub enum Failure {
@@ -15,13 +18,17 @@ pub enum Failure {
     Run(String),
     /// The command completed, but its result is worthless: exit status 3.
     Worthless(String),
+    /// The command was interrupted, and has kept what it had: exit status 130.
+    Interrupted(String),
 }
 
 impl Failure {
     /// The message.
     pub fn words(&self) -> String {
         match self {
-            Self::Usage(words) | Self::Run(words) | Self::Worthless(words) => words.clone(),
+            Self::Usage(words) | Self::Run(words) | Self::Worthless(words) | Self::Interrupted(words) => {
+                words.clone()
+            }
             Self::ModelFile(mistakes) => mistakes.render(),
         }
     }
@@ -35,6 +42,7 @@ impl Failure {
             Self::ModelFile(mistakes) => (mistakes.render(), 2),
             Self::Run(words) => (format!("error: {words}\n"), 1),
             Self::Worthless(words) => (format!("error: {words}\n"), 3),
+            Self::Interrupted(words) => (format!("{words}\n"), INTERRUPTED),
         };
         // Nobody is left to be told if standard error is closed.
         let _ = stderr.write_all(text.as_bytes());

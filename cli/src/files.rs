@@ -4,12 +4,28 @@ use crate::failure::Failure;
 use crate::write::{self, Known};
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::{fs, io};
 
-/// The root of the workspace that this program was built from.
+/// The root of the workspace that this program was built from: for programs that cannot be anywhere else.
 pub fn root() -> PathBuf {
-    let xtask = Path::new(env!("CARGO_MANIFEST_DIR"));
-    xtask.parent().unwrap_or(xtask).to_path_buf()
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    own.parent().unwrap_or(own).to_path_buf()
+}
+
+/// The root of the workspace that this program was built from, if it is run from there: an installed program has none,
+/// whether or not that folder is still there.
+pub(crate) fn workspace() -> Option<&'static Path> {
+    static WORKSPACE: OnceLock<Option<PathBuf>> = OnceLock::new();
+    let find = || {
+        let root = fs::canonicalize(root()).ok()?;
+        let is_inside = |path: PathBuf| fs::canonicalize(path).is_ok_and(|path| path.starts_with(&root));
+        // Cargo says from where it runs a program, wherever it builds.
+        let by_cargo = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
+        let is_own = std::env::current_exe().is_ok_and(is_inside) || by_cargo.is_some_and(is_inside);
+        is_own.then_some(root)
+    };
+    WORKSPACE.get_or_init(find).as_deref()
 }
 
 /// The largest model file, and the largest robot, that is read: a hundred times what a mechanism of five hundred bodies
@@ -65,11 +81,10 @@ fn unreadable(path: &Path, error: &io::Error) -> String {
     }
     let words = format!("{} cannot be read: {error}", path.display());
     let file_name = format!("{}.toml", path.file_stem().unwrap_or_default().to_string_lossy());
-    let shipped = root().join("models").join(file_name);
-    if error.kind() == io::ErrorKind::NotFound && shipped.is_file() {
-        format!("{words}; there is {}", shipped.display())
-    } else {
-        words
+    let shipped = workspace().map(|root| root.join("models").join(file_name));
+    match shipped.filter(|shipped| error.kind() == io::ErrorKind::NotFound && shipped.is_file()) {
+        Some(shipped) => format!("{words}; there is {}", shipped.display()),
+        None => words,
     }
 }
 
@@ -82,7 +97,7 @@ pub fn write(path: &Path, text: &str) -> Result<bool, Failure> {
 pub fn shown(path: &Path) -> String {
     let inside = fs::canonicalize(path)
         .ok()
-        .and_then(|full| full.strip_prefix(fs::canonicalize(root()).ok()?).ok().map(Path::to_path_buf));
+        .and_then(|full| full.strip_prefix(workspace()?).ok().map(Path::to_path_buf));
     match inside {
         Some(relative) => relative.to_string_lossy().replace('\\', "/"),
         None => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),

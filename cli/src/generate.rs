@@ -20,7 +20,7 @@ use std::{fs, io};
 
 /// Writes the data sheets of the models and the modules that are kept, or checks that they are fresh.
 pub(crate) fn generate(args: &GenerateArgs) -> Result<(), Failure> {
-    let outputs = outputs(args, &Place::of_workspace(&files::root()))?;
+    let outputs = outputs(args, &Place::all())?;
     if args.check { check(&outputs, &mend(args)) } else { write(&outputs) }
 }
 

@@ -4,7 +4,7 @@ use crate::args::InputSetting;
 use crate::failure::Failure;
 use crate::{files, words};
 use gyro_model::{Model, Rational};
-use gyro_runner::Input;
+use gyro_runner::{Between, Input};
 use std::path::Path;
 
 /// The inputs that the command line gives.
@@ -17,19 +17,37 @@ pub(crate) fn inputs(model: &Model, given: &[(String, InputSetting)]) -> Result<
         if inputs.iter().any(|input| input.index == index) {
             return Err(Failure::Usage(format!("--input gives `{name}` twice")));
         }
-        let rows = match setting {
-            InputSetting::Number(value) => vec![[0.0, *value]],
-            InputSetting::File(path) => read(path)
-                .map_err(|words| Failure::Usage(format!("--input {name}={}: {words}", path.display())))?,
+        let input = match setting {
+            InputSetting::Number(value) => Input::constant(index, *value),
+            InputSetting::File(path, said) => {
+                let rows = read(path)
+                    .map_err(|words| Failure::Usage(format!("--input {name}={}: {words}", path.display())))?;
+                Input::new(index, rows, said.unwrap_or_else(|| between(model, index)))
+            }
+            InputSetting::Rows(rows) => {
+                let rows =
+                    increasing(rows).map_err(|words| Failure::Usage(format!("--input {name}: {words}")))?;
+                Input::new(index, rows, between(model, index))
+            }
         };
-        check(model, index, &rows).map_err(|words| Failure::Usage(format!("--input {name}: {words}")))?;
-        inputs.push(Input { index, rows });
+        check(model, &input).map_err(|words| Failure::Usage(format!("--input {name}: {words}")))?;
+        inputs.push(input);
     }
     Ok(inputs)
 }
 
+/// What the model file says an input is between the rows of a table.
+pub(crate) fn between(model: &Model, index: usize) -> Between {
+    match model.between.get(index).copied().unwrap_or_default() {
+        gyro_model::Between::Held => Between::Held,
+        gyro_model::Between::Linear => Between::Linear,
+        gyro_model::Between::Smooth => Between::Smooth,
+    }
+}
+
 /// The values of an input make sense if its extremes do: what must hold of a coefficient is a sign or a range of sizes.
-fn check(model: &Model, index: usize, rows: &[[f64; 2]]) -> Result<(), String> {
+fn check(model: &Model, input: &Input) -> Result<(), String> {
+    let rows = input.extremes();
     let by = |less: fn(f64, f64) -> bool| {
         rows.iter().copied().reduce(|extreme, row| if less(row[1], extreme[1]) { row } else { extreme })
     };
@@ -38,7 +56,7 @@ fn check(model: &Model, index: usize, rows: &[[f64; 2]]) -> Result<(), String> {
         let [t, value] = row;
         let exact = Rational::from_float(value).ok_or_else(|| format!("{value} is not finite"))?;
         let place = if rows.len() > 1 { format!(" at t = {t} s") } else { String::new() };
-        model.check_input(index, &exact).map_err(|words| format!("with {value}{place} {words}"))?;
+        model.check_input(input.index, &exact).map_err(|words| format!("with {value}{place} {words}"))?;
     }
     Ok(())
 }
@@ -52,7 +70,22 @@ fn unknown(model: &Model, name: &str, known: &[&str]) -> Failure {
     Failure::Usage(format!("--input: unknown input `{name}`: {help}"))
 }
 
-fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
+/// The rows of a table that a program gives.
+fn increasing(rows: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, String> {
+    if let Some(row) = rows.iter().find(|row| !row.iter().all(|value| value.is_finite())) {
+        return Err(format!("found {row:?} in place of finite numbers"));
+    }
+    match rows.windows(2).find(|rows| rows[0][0] >= rows[1][0]) {
+        Some(rows) => {
+            Err(format!("the time {:?} is not after {:?}: times must increase", rows[1][0], rows[0][0]))
+        }
+        None if rows.is_empty() => Err("it has no rows: give times and values".to_owned()),
+        None => Ok(rows.to_vec()),
+    }
+}
+
+/// The rows of a table in a file.
+pub(crate) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     let text =
         files::input(path, files::LARGEST_TABLE).map_err(|e| format!("the file cannot be read: {e}"))?;
     rows(&text)

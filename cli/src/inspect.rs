@@ -176,15 +176,15 @@ impl Inspection {
         rows
     }
 
-    /// Which functions are written as loops over tables of constants, and what they would be without.
+    /// Which functions are written as loops over tables of constants, with operations as written and as done.
     fn loops(&self) -> String {
         let functions = self.data_sheet.functions.iter();
         let rows = functions.filter_map(|function| {
-            let Repetition { loops, copies, written } = function.repetition?;
-            let numbers = [loops, copies, written, function.operations.total()].map(|n| n.to_string());
+            let Repetition { loops, copies, written, operations } = function.repetition?;
+            let numbers = [loops, copies, written, operations.total()].map(|n| n.to_string());
             Some([function.kernel.name().to_owned()].into_iter().chain(numbers).collect::<Vec<_>>())
         });
-        let head = ["", "loops", "copies", "operations of the text", "straight-line"].map(str::to_owned);
+        let head = ["", "loops", "copies", "operations of the text", "operations done"].map(str::to_owned);
         let rows: Vec<_> = [head.to_vec()].into_iter().chain(rows).collect();
         if rows.len() == 1 {
             return String::new();

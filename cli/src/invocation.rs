@@ -1,7 +1,11 @@
 //! By which program the commands are called: `gyro`, or `cargo xtask` for those who develop the project. Help texts
 //! and messages name that one.
 
-use clap::{Command, Parser};
+use crate::Cli;
+use crate::args::CompletionsArgs;
+use crate::failure::Failure;
+use crate::remarks::say;
+use clap::{Command, CommandFactory, Parser};
 use std::sync::OnceLock;
 
 /// What help texts write for the program.
@@ -16,6 +20,13 @@ pub fn parse<P: Parser>() -> P {
     let command = named(P::command());
     NAME.get_or_init(|| name_of(&command));
     P::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit())
+}
+
+/// Prints the completions for a shell, of the program and of `cargo xtask` alike: commands and options are the same.
+pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), Failure> {
+    let mut text = Vec::new();
+    clap_complete::generate(args.shell, &mut named(Cli::command()), "gyro", &mut text);
+    say(&String::from_utf8_lossy(&text))
 }
 
 /// The name of the program: what a user types before the name of a command.
@@ -46,8 +57,6 @@ fn name_of(command: &Command) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Cli;
-    use clap::CommandFactory;
 
     /// Each example is a command line of the program that was called, whichever that is.
     #[test]

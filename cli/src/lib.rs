@@ -2,6 +2,7 @@
 //! those who develop the project. What is public besides [`Cli`] and [`Command`] is for these.
 
 mod args;
+mod cache;
 pub mod chain;
 mod check;
 mod columns;
@@ -14,8 +15,13 @@ mod folder;
 pub mod generate;
 mod inputs;
 mod inspect;
+mod interrupt;
 mod invocation;
+#[cfg(feature = "jit")]
+mod jit;
 mod json;
+#[cfg(feature = "jit")]
+pub mod library;
 mod linear;
 mod linearization;
 pub mod machine;
@@ -26,10 +32,12 @@ pub mod places;
 mod plot;
 pub mod programs;
 pub mod progress;
+mod quicker;
 mod remarks;
 mod report;
 mod rounding;
 mod runs;
+mod runtime;
 mod scene;
 mod schema;
 mod show;
@@ -37,6 +45,7 @@ mod simulate;
 mod spectrum;
 mod stability;
 mod summary;
+mod sweep;
 mod urdf;
 mod variants;
 mod verdict;
@@ -44,7 +53,7 @@ mod verify;
 mod words;
 pub mod write;
 
-pub use args::{Cli, Command, EXIT_CODES};
+pub use args::{Cli, Command, Common, EXIT_CODES, VERSION};
 use failure::Failure;
 pub use invocation::{named, parse};
 
@@ -60,12 +69,16 @@ impl Command {
             Self::Schema(args) => schema::schema(args),
             Self::Generate(args) => generate::generate(args),
             Self::Simulate(args) => simulate::simulate(args),
+            Self::Sweep(args) => sweep::sweep(args),
             Self::Show(args) => show::show(args),
             Self::Export(args) => export::export(args),
             Self::Inspect(args) => inspect::inspect(args),
             Self::Import(args) => urdf::import(args),
             Self::Verify(args) => verify::verify_models(args),
             Self::Report(args) => report::report(args),
+            Self::Cache(args) => cache::cache(args),
+            Self::Completions(args) => invocation::completions(args),
+            Self::Answer(args) => nested::answer(args),
         }
     }
 }

@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use std::iter;
 
 /// Names of the state's elements.
-fn names(model: &Model, linear: &Linear) -> Vec<String> {
+pub(crate) fn names(model: &Model, linear: &Linear) -> Vec<String> {
     linear.elements.iter().map(|element| name(model, element)).collect()
 }
 

@@ -4,7 +4,9 @@ use gyro_cli::{Cli, parse};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match parse::<Cli>().command.run() {
+    let cli = parse::<Cli>();
+    cli.common.apply();
+    match cli.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }

@@ -1,16 +1,17 @@
 //! Compiles a generated mechanism into a small program and runs it, or into a library to look at.
 //!
-//! Each module gets a package of its own, named by a hash of its text, under `target/simulate/programs` of the
-//! workspace; all of them share one build folder, so that only the first has to wait for `gyro-sim`. Whether anything
-//! has to be compiled is Cargo's to decide.
+//! Each module gets a package of its own, named by a hash of its text, in the folder of the runtime that this program
+//! carries; all of them share one build folder, so that only the first has to wait for `gyro-sim`. Whether anything has
+//! to be compiled is Cargo's to decide.
 
-use crate::args::Precision;
+use crate::args::{AnswerArgs, Precision};
 use crate::failure::Failure;
 use crate::progress::{self, Spinner};
+use crate::quicker::{self, Took};
 use crate::runs::{Runs, main};
 use crate::scene::Scene;
 use crate::verify::verify_quickly;
-use crate::{files, machine_code, remarks};
+use crate::{files, interrupt, machine_code, programs, remarks, runtime, scene};
 use gyro_codegen::{Functions, Kernel, Module};
 use gyro_model::Model;
 use gyro_runner::protocol::{self, Reply, Request};
@@ -21,32 +22,44 @@ use std::hash::{Hash, Hasher};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::Instant;
 
 /// Generates, compiles and runs; `tell` hears of samples and progress.
 ///
 /// A run that fails for a reason which a linearisation explains is made again by a program that has one, of which the
 /// reason is all that is heard: to most runs that program would be of no use.
-pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Summary, Failure> {
+pub(crate) fn simulate(
+    scene: &Scene,
+    tell: impl FnMut(Event<'_>),
+    took: &mut Took,
+) -> Result<Summary, Failure> {
     let runs = Runs::of(scene);
     let is_companion = scene.has_companions && !scene.approach.examine;
-    let words = match run(scene, runs, tell)? {
+    let words = match run(scene, runs, tell, took)? {
         Answer::Done(summary, _) => return Ok(*summary),
         Answer::Unexplained(words) => words,
     };
     if !is_companion {
-        run(scene, runs.map(Runs::examined), |_| ())?;
+        run(scene, runs.map(Runs::examined), |_| (), took)?;
     }
     Err(Failure::Run(words))
 }
 
 /// Generates, compiles and runs with a program for these runs.
-fn run(scene: &Scene, runs: Option<Runs>, tell: impl FnMut(Event<'_>)) -> Result<Answer, Failure> {
+fn run(
+    scene: &Scene,
+    runs: Option<Runs>,
+    tell: impl FnMut(Event<'_>),
+    took: &mut Took,
+) -> Result<Answer, Failure> {
     let spinner = progress::deriving(&scene.page);
     let functions = runs.map_or_else(Functions::of_solvers, Runs::functions);
-    let module = gyro_codegen::generate_functions(&scene.page_name, &scene.page, &functions)
+    let module = gyro_codegen::generate_by_effort(&scene.page_name, &scene.page, &functions, scene.effort)
         .map_err(|e| Failure::Usage(e.to_string()))?;
     drop(spinner);
+    let began = Instant::now();
     let program = program(&scene.page, &module, scene.precision, runs)?;
+    let compiled = began.elapsed();
     let request = Request {
         settings: scene.settings,
         approach: scene.approach,
@@ -54,7 +67,14 @@ fn run(scene: &Scene, runs: Option<Runs>, tell: impl FnMut(Event<'_>)) -> Result
         start: scene.start.clone(),
         measure_for: None,
     };
-    Session::open(&program, &[])?.hear(&request, tell)
+    let _interruptible = interrupt::Run::begin();
+    let answer = Session::open(&program, &[])?.hear(&request, tell)?;
+    *took = Took {
+        operations: quicker::operations(&module.data_sheet),
+        compiling: compiled.as_secs_f64(),
+        running: (began.elapsed() - compiled).as_secs_f64(),
+    };
+    Ok(answer)
 }
 
 /// Compiles a module into a program that answers requests of these runs, or of all; returns where it is.
@@ -65,19 +85,58 @@ pub(crate) fn program(
     runs: Option<Runs>,
 ) -> Result<PathBuf, Failure> {
     let package = Package::program(module, precision, runs);
-    if !package.is_there() {
+    if !package.is_there()? {
         verify_quickly(page, module)?;
     }
     build(&package)?;
-    Ok(package.program_file())
+    package.program_file()
 }
 
-/// Compiles the runtime-assembled model, optimised, into a program that takes the path of a model file, the name of a
-/// form and of a precision and answers requests; returns where it is.
-pub(crate) fn assembled() -> Result<PathBuf, Failure> {
-    let package = Package::assembled();
+/// Compiles a module into a program with these lines that runs the scenarios of studies, for this very processor if
+/// that is asked for; returns where it is.
+pub(crate) fn sweeping(
+    page: &Model,
+    module: &Module,
+    main: String,
+    is_native: bool,
+) -> Result<PathBuf, Failure> {
+    let options: &[&str] =
+        if is_native { &["--config", "build.rustflags=['-Ctarget-cpu=native']"] } else { &[] };
+    let mut package = Package::new(module, ("main.rs", main), options);
+    package.without_cargo = SINGLE_SCENARIOS;
+    package.manifest += "\n[dependencies.gyro-sweep]\npath = \"../../sweep\"\n";
+    if !package.is_there()? {
+        verify_quickly(page, module)?;
+    }
     build(&package)?;
-    Ok(package.program_file())
+    package.program_file()
+}
+
+/// A program that takes the word `answer`, the path of a model file and the names of a form and of a precision, and
+/// answers requests with the runtime-assembled model, optimised: this very program where it was compiled so, else the
+/// one that the workspace makes of it.
+pub(crate) fn assembled() -> Result<PathBuf, Failure> {
+    match files::workspace().filter(|_| cfg!(debug_assertions)) {
+        Some(root) => {
+            let _spinner = Spinner::new("compiling the runtime-assembled model".to_owned());
+            let mut command = Command::new(programs::cargo());
+            command.args(["build", "--release", "--package", "gyro-assembled", "--example", ANSWERING]);
+            programs::executable(command.current_dir(root), ANSWERING)
+        }
+        None => std::env::current_exe().map_err(|e| Failure::Run(format!("this program is not found: {e}"))),
+    }
+}
+
+/// The program of the package `gyro-assembled`, and the word for it here.
+const ANSWERING: &str = "answer";
+
+/// Answers requests with the runtime-assembled model.
+pub(crate) fn answer(args: &AnswerArgs) -> Result<(), Failure> {
+    let mut model = scene::read(&args.model)?;
+    model.counts_work = true;
+    // Whoever asks has heard of a failure.
+    gyro_assembled::child::main_by_names(&model, &args.form, &args.precision);
+    Ok(())
 }
 
 /// Compiles these kernels for `f64`, optimised; the library, in which each has its symbol.
@@ -85,8 +144,11 @@ pub(crate) fn library(module: &Module, kernels: &[Kernel]) -> Result<PathBuf, Fa
     let root = machine_code::library(&module.type_name, kernels);
     let package = Package::new(module, ("lib.rs", root), &["--", machine_code::SYMBOLS]);
     build(&package)?;
-    Ok(package.built(&format!("lib{}.rlib", package.name.replace('-', "_"))))
+    package.built(&format!("lib{}.rlib", package.name.replace('-', "_")))
 }
+
+/// Where cargo builds all packages.
+const BUILD: &str = "build";
 
 /// The files of a package.
 struct Package {
@@ -94,83 +156,70 @@ struct Package {
     manifest: String,
     /// Name and text of the file at its root.
     root: (&'static str, String),
-    /// The generated module; none in a program of the runtime-assembled model.
-    mechanism: Option<String>,
+    /// The generated module.
+    mechanism: String,
     /// What rustc is told besides.
     options: &'static [&'static str],
+    /// What can be had without cargo.
+    without_cargo: &'static str,
 }
+
+/// What a run can be had by without cargo.
+const OTHER_ENGINES: &str = if cfg!(feature = "jit") {
+    ", or take --engine jit, which needs no compiler and has the same results to the last bit"
+} else {
+    ", or take an engine that needs no compiler, such as --engine assembled"
+};
+
+/// The same of a sweep.
+const SINGLE_SCENARIOS: &str = if cfg!(feature = "jit") {
+    ". Without it, single scenarios can be had: `simulate MODEL --engine jit --set PARAMETER=VALUE`"
+} else {
+    ". Without it, single scenarios can be had: `simulate MODEL --engine assembled --set PARAMETER=VALUE`"
+};
 
 impl Package {
     fn program(module: &Module, precision: Precision, runs: Option<Runs>) -> Self {
-        Self::new(module, ("main.rs", main(module, precision, runs)), &[])
+        let package = Self::new(module, ("main.rs", main(module, precision, runs)), &[]);
+        Self { without_cargo: OTHER_ENGINES, ..package }
     }
 
     fn new(module: &Module, root: (&'static str, String), options: &'static [&'static str]) -> Self {
         let mut hasher = DefaultHasher::new();
         (&root.1, &module.code).hash(&mut hasher);
         let name = format!("{}-{:016x}", module.name, hasher.finish());
-        let manifest = manifest(&name, &["gyro-sim", "runner"]);
-        Self { manifest, name, root, mechanism: Some(module.code.clone()), options }
+        Self {
+            manifest: manifest(&name),
+            name,
+            root,
+            mechanism: module.code.clone(),
+            options,
+            without_cargo: "",
+        }
     }
 
-    fn assembled() -> Self {
-        let name = "gyro-assembled-program".to_owned();
-        let manifest = manifest(&name, &["assembled", "model"]);
-        Self { manifest, name, root: ("main.rs", ASSEMBLED.to_owned()), mechanism: None, options: &[] }
-    }
-
-    fn program_file(&self) -> PathBuf {
+    fn program_file(&self) -> Result<PathBuf, Failure> {
         self.built(&format!("{}{}", self.name, std::env::consts::EXE_SUFFIX))
     }
 
     /// Where Cargo puts what it builds.
-    fn built(&self, file: &str) -> PathBuf {
-        target().join("release").join(file)
+    fn built(&self, file: &str) -> Result<PathBuf, Failure> {
+        Ok(runtime::folder()?.join(BUILD).join("release").join(file))
     }
 
-    fn folder(&self) -> PathBuf {
-        cache().join("programs").join(&self.name)
+    fn folder(&self) -> Result<PathBuf, Failure> {
+        Ok(runtime::folder()?.join("programs").join(&self.name))
     }
 
     /// Whether this very module was written, and so verified, before.
-    fn is_there(&self) -> bool {
-        let file = self.folder().join("src").join("mechanism.rs");
-        self.mechanism.as_ref().is_some_and(|mechanism| crate::write::holds(&file, mechanism))
+    fn is_there(&self) -> Result<bool, Failure> {
+        let file = self.folder()?.join("src").join("mechanism.rs");
+        Ok(crate::write::holds(&file, &self.mechanism))
     }
 }
 
-/// The program of the runtime-assembled model.
-const ASSEMBLED: &str = r#"use gyro_assembled::{Form, Precision, child};
-use std::{env, fs, path::Path};
-
-fn main() -> std::process::ExitCode {
-    let arguments: Vec<String> = env::args().collect();
-    let [_, file, form, precision] = &arguments[..] else { panic!("a model file, a form and a precision were expected") };
-    let folder = Path::new(file).parent().unwrap_or(Path::new(""));
-    let text = fs::read_to_string(file).expect("the model file can be read");
-    let mut load = |table: &str| fs::read_to_string(folder.join(table)).map_err(|e| e.to_string());
-    let mut model = gyro_model::read_with(file, &text, &mut load).unwrap_or_else(|e| panic!("{}", e.render()));
-    model.counts_work = true;
-    let form = match form.as_str() {
-        "recursive" => Form::Recursive,
-        "careful" => Form::Careful,
-        _ => Form::Dense,
-    };
-    let precision = if precision == "f32" { Precision::Single } else { Precision::Double };
-    child::main(&model, form, precision)
-}
-"#;
-
-/// A manifest with these folders of the workspace as dependencies.
-fn manifest(name: &str, folders: &[&str]) -> String {
-    let dependency = |folder: &&str| {
-        let path = files::root().join(folder).to_string_lossy().into_owned();
-        match *folder {
-            "gyro-sim" => format!("gyro-sim = {{ path = {path:?}, default-features = false }}\n"),
-            folder => format!("gyro-{folder} = {{ path = {path:?} }}\n"),
-        }
-    };
-    let dependencies: String = folders.iter().map(dependency).collect();
+/// A manifest with the carried sources as dependencies.
+fn manifest(name: &str) -> String {
     format!(
         "[package]
 name = \"{name}\"
@@ -181,38 +230,39 @@ publish = false
 [workspace]
 
 [dependencies]
-{dependencies}
+gyro-sim = {{ path = \"../../gyro-sim\", default-features = false }}
+gyro-runner = {{ path = \"../../runner\" }}
+
 [profile.release]
 debug = false
 "
     )
 }
 
-fn cache() -> PathBuf {
-    files::root().join("target").join("simulate")
-}
-
-fn target() -> PathBuf {
-    cache().join("build")
-}
-
 /// Brings a package up to date.
 fn build(package: &Package) -> Result<(), Failure> {
-    let (cache, folder) = (cache(), package.folder());
-    let failure = |e: std::io::Error| Failure::Run(format!("{} cannot be used: {e}", cache.display()));
+    let (runtime, folder) = (runtime::folder()?, package.folder()?);
+    let failure = |e: std::io::Error| Failure::Run(format!("{} cannot be used: {e}", runtime.display()));
     fs::create_dir_all(folder.join("src")).map_err(failure)?;
-    let lock = File::create(cache.join("lock")).map_err(failure)?;
+    let lock = File::create(runtime.join("lock")).map_err(failure)?;
     // Released when the file is closed at the end of this function. Two runs at once take turns at building.
     wait_for(&lock, remarks::note).map_err(failure)?;
     files::write(&folder.join("Cargo.toml"), &package.manifest)?;
     let (file, root) = &package.root;
     files::write(&folder.join("src").join(file), root)?;
-    if let Some(mechanism) = &package.mechanism {
-        files::write(&folder.join("src").join("mechanism.rs"), mechanism)?;
+    files::write(&folder.join("src").join("mechanism.rs"), &package.mechanism)?;
+    // The carried versions hold here too. Cargo drops from its copy what the package does not need.
+    if !folder.join("Cargo.lock").is_file() {
+        fs::copy(runtime.join("Cargo.lock"), folder.join("Cargo.lock")).map_err(failure)?;
     }
-    copy_lock_file(&folder)?;
     let _spinner = Spinner::new(format!("compiling {}", package.name));
-    compile(package, &target())
+    match cargo(package, &folder, &runtime.join(BUILD))? {
+        None => Ok(()),
+        Some(words) => Err(Failure::Run(format!(
+            "the generated program does not compile; it is in {}\n{words}",
+            folder.display()
+        ))),
+    }
 }
 
 /// Waits until a file can be locked, and says so if that is not at once.
@@ -227,49 +277,27 @@ fn wait_for(lock: &File, tell: impl Fn(&str)) -> std::io::Result<()> {
     }
 }
 
-/// The workspace's versions hold here too. Cargo drops from its copy what the package does not need.
-fn copy_lock_file(folder: &Path) -> Result<(), Failure> {
-    let copy = folder.join("Cargo.lock");
-    if copy.is_file() {
-        return Ok(());
-    }
-    match fs::read_to_string(files::root().join("Cargo.lock")) {
-        Ok(text) => files::write(&copy, &text).map(|_| ()),
-        Err(_) => Ok(()),
-    }
-}
-
-fn compile(package: &Package, target: &Path) -> Result<(), Failure> {
-    let folder = package.folder();
-    let mut output = cargo(package, target, &["--offline"])?;
-    // Cargo says so if something has to be downloaded first.
-    if output.as_ref().is_some_and(|words| words.contains("offline")) {
-        output = cargo(package, target, &[])?;
-    }
-    match output {
-        None => Ok(()),
-        Some(words) => Err(Failure::Run(format!(
-            "the generated program does not compile; it is in {}\n{words}",
-            folder.display()
-        ))),
-    }
-}
-
 /// What Cargo said if it failed.
-fn cargo(package: &Package, target: &Path, options: &[&str]) -> Result<Option<String>, Failure> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let output = Command::new(cargo)
-        .args(["rustc", "--quiet", "--release", "--target-dir"])
+fn cargo(package: &Package, folder: &Path, target: &Path) -> Result<Option<String>, Failure> {
+    let output = Command::new(programs::cargo())
+        .args(["rustc", "--quiet", "--release", "--offline", "--target-dir"])
         .arg(target)
-        .args(options)
         .args(package.options)
-        .current_dir(package.folder())
+        .current_dir(folder)
         .env_remove("CARGO_BUILD_TARGET")
         .stdin(Stdio::null())
         .output()
-        .map_err(|e| Failure::Run(format!("cargo cannot be started: {e}")))?;
+        .map_err(|e| Failure::Run(without_cargo(&e, package.without_cargo)))?;
     let words = || String::from_utf8_lossy(&output.stderr).into_owned();
     Ok((!output.status.success()).then(words))
+}
+
+/// What to do where cargo is missing.
+fn without_cargo(error: &std::io::Error, instead: &str) -> String {
+    format!(
+        "cargo cannot be started ({error}), and generated code must be compiled: install Rust from \
+         https://rustup.rs{instead}"
+    )
 }
 
 /// A program under way that answers requests.
@@ -311,6 +339,8 @@ impl Session {
             .map_err(|e| Failure::Run(format!("{}: {e}", self.program.display())))?;
         match listen(&mut self.replies, &mut tell)? {
             Some(answer) => Ok(answer),
+            // On a terminal the program hears of it, too.
+            None if interrupt::was_interrupted() => Err(interrupt::failure()),
             None => {
                 let ended = self.child.wait().map_or_else(|e| e.to_string(), |status| status.to_string());
                 Err(Failure::Run(format!("{} ended without an answer: {ended}", self.program.display())))
@@ -341,6 +371,7 @@ impl Drop for Session {
 fn listen(output: &mut impl BufRead, tell: &mut impl FnMut(Event<'_>)) -> Result<Option<Answer>, Failure> {
     let mut timing = None;
     while let Some(reply) = protocol::read(output).map_err(|e| Failure::Run(format!("the program: {e}")))? {
+        interrupt::check()?;
         match reply {
             Reply::Sample(sample) => tell(Event::Sample(&sample)),
             Reply::Linear(linear) => tell(Event::Linear(&linear)),

@@ -1,6 +1,8 @@
 //! Where model files, their data sheets and the modules that are kept are in the workspace.
 
 use crate::failure::Failure;
+use crate::files;
+use crate::invocation::program;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -19,8 +21,12 @@ const GOLDEN: [&str; 5] =
     ["driven_gyroscope", "four_bar", "gyroscope_maximal", "gyroscope_parameters", "heavy_top"];
 
 impl Place {
-    /// The gallery, what only tests need, and what the firmware runs.
-    pub(crate) fn of_workspace(root: &Path) -> [Self; 3] {
+    /// The gallery, what only tests need, and what the firmware runs; none for a program that is not in a workspace.
+    pub(crate) fn all() -> Vec<Self> {
+        files::workspace().map_or_else(Vec::new, |root| Self::of_workspace(root).to_vec())
+    }
+
+    fn of_workspace(root: &Path) -> [Self; 3] {
         let (gallery, tests, firmware) = (root.join("mechanisms"), root.join("tests"), root.join("embedded"));
         let kept = vec![
             (root.join("gyro-sim").join("src").join("generated"), &["gyroscope"][..]),
@@ -47,6 +53,9 @@ impl Place {
 
 /// The model files of the workspace, in the order of their names.
 pub(crate) fn all_model_files(places: &[Place]) -> Result<Vec<PathBuf>, Failure> {
+    if places.is_empty() {
+        return Err(no_model_file());
+    }
     let mut pages = Vec::new();
     for place in places {
         pages.extend(
@@ -54,6 +63,11 @@ pub(crate) fn all_model_files(places: &[Place]) -> Result<Vec<PathBuf>, Failure>
         );
     }
     Ok(pages)
+}
+
+/// What is wrong where all model files of the workspace are meant and there is none.
+pub(crate) fn no_model_file() -> Failure {
+    Failure::Usage(format!("a model file is expected: {} new NAME writes one to start from", program()))
 }
 
 /// The place that a model file belongs to, unless it is from elsewhere.

@@ -18,21 +18,29 @@ pub fn io_failure(path: &Path, error: &std::io::Error) -> Failure {
 /// Builds a program that measures, as `set` has Cargo do it; returns where it is.
 pub fn built(bench: &str, set: impl FnOnce(&mut Command)) -> Result<PathBuf, Failure> {
     let _spinner = Spinner::new("building the benches".to_owned());
-    let options =
-        ["bench", "--no-run", "--package", "gyro-benches", "--bench", bench, "--message-format=json"];
     let mut command = Command::new(cargo());
-    command.args(options).current_dir(files::root());
+    command
+        .args(["bench", "--no-run", "--package", "gyro-benches", "--bench", bench])
+        .current_dir(files::root());
     set(&mut command);
-    let messages = output(&mut command)?;
+    executable(&mut command, bench)
+}
+
+/// Has Cargo build what it is told to; returns where the program of this name is.
+///
+/// # Errors
+/// That of the build.
+pub fn executable(command: &mut Command, name: &str) -> Result<PathBuf, Failure> {
+    let messages = output(command.arg("--message-format=json"))?;
     let executable = |line: &str| {
         let message: serde_json::Value = serde_json::from_str(line).ok()?;
-        let is_ours = message["target"]["name"] == bench;
+        let is_ours = message["target"]["name"] == name;
         is_ours.then(|| message["executable"].as_str().map(PathBuf::from)).flatten()
     };
     messages
         .lines()
         .find_map(executable)
-        .ok_or_else(|| Failure::Run("cargo does not say where the bench is".to_owned()))
+        .ok_or_else(|| Failure::Run(format!("cargo does not say where `{name}` is")))
 }
 
 pub fn cargo() -> std::ffi::OsString {

@@ -3,7 +3,7 @@
 use crate::remarks;
 use gyro_model::Model;
 use gyro_runner::{Forecast, duration_words};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, Write as _};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread;
@@ -33,7 +33,7 @@ impl Progress {
 
     /// Says how long the run will take, if that is long.
     pub fn foretold(&self, forecast: &Forecast) {
-        if forecast.seconds > LONG {
+        if forecast.seconds > LONG && !remarks::is_quiet() {
             let words = duration_words(forecast.seconds);
             // Nobody is left to be told if standard error is closed.
             let _ = writeln!(std::io::stderr(), "{:.3e} steps will take {words}", forecast.steps);
@@ -42,7 +42,7 @@ impl Progress {
 
     /// The run has reached this time.
     pub fn reached(&mut self, t: f64) {
-        if self.bar.is_none() && self.began.elapsed() < PATIENCE {
+        if remarks::is_quiet() || self.bar.is_none() && self.began.elapsed() < PATIENCE {
             return;
         }
         let bar = self.bar.get_or_insert_with(bar);
@@ -65,6 +65,14 @@ fn bar() -> ProgressBar {
     ProgressBar::new(DIVISIONS).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
+/// A bar that draws unless nothing is to be said.
+fn shown(bar: ProgressBar) -> ProgressBar {
+    if remarks::is_quiet() {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    bar
+}
+
 /// Says what is under way until it is dropped: at once on a terminal, elsewhere in lines, and only if it takes a while.
 #[derive(Debug)]
 pub struct Spinner {
@@ -81,7 +89,7 @@ impl Spinner {
     pub fn new(message: String) -> Self {
         let is_terminal = std::io::stderr().is_terminal();
         let end = (!is_terminal).then(|| in_lines(message.clone(), remarks::note));
-        let bar = ProgressBar::new_spinner().with_message(message);
+        let bar = shown(ProgressBar::new_spinner().with_message(message));
         bar.enable_steady_tick(Duration::from_millis(100));
         Self { bar, _end: end }
     }
@@ -143,7 +151,8 @@ pub struct Count {
 impl Count {
     pub fn new(prefix: String) -> Self {
         let style = ProgressStyle::with_template("{prefix} {bar:30} {pos}/{len} {msg} ({elapsed})");
-        let bar = ProgressBar::new(1).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let bar =
+            shown(ProgressBar::new(1).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())));
         bar.enable_steady_tick(Duration::from_millis(200));
         Self { bar, prefix }
     }

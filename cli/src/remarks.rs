@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::words::count;
 use gyro_model::{Model, OutputKind, RedundantRow, RowOwner};
 use std::io::Write as _;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Remarks of one kind that are made of a model file.
 const MOST: usize = 10;
@@ -24,14 +25,39 @@ pub(crate) fn report_redundant(model: &Model, page: &str, strict: bool) -> Resul
     Ok(())
 }
 
+/// Says something on standard output. Whoever closes the pipe has read enough; any other loss of output is a failure.
+pub(crate) fn say(text: &str) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::Run(format!("standard output cannot be written: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Says something on standard error.
 pub(crate) fn warn(words: &str) {
     // Nobody is left to be warned if standard error is closed.
     let _ = writeln!(std::io::stderr(), "warning: {words}");
 }
 
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Has notes and progress left out from now on.
+pub(crate) fn be_quiet() {
+    IS_QUIET.store(true, Ordering::Relaxed);
+}
+
+pub(crate) fn is_quiet() -> bool {
+    IS_QUIET.load(Ordering::Relaxed)
+}
+
 /// Says on standard error what is going on.
 pub(crate) fn note(words: &str) {
+    if is_quiet() {
+        return;
+    }
     // Nobody is left to be told if standard error is closed.
     let _ = writeln!(std::io::stderr(), "note: {words}");
 }

@@ -43,6 +43,12 @@ impl Runs {
         Self { is_examined: true, ..self }
     }
 
+    /// Whether they are linearised.
+    #[cfg(feature = "jit")]
+    pub(crate) fn is_examined(self) -> bool {
+        self.is_examined
+    }
+
     /// The functions that they call: each run begins with a look for singular poses, which the partition finds.
     pub(crate) fn functions(self) -> Functions {
         let of_runs: &[Group] = match (self.coordinates, self.correction, self.is_implicit) {
@@ -100,6 +106,11 @@ fn builder_of_all(module: &Module, precision: &str) -> String {
 /// The program's own lines: with what motions are begun is decided by what runs are to be made, and by what the module
 /// implements. Nothing is imported: a mechanism may have the name of anything.
 pub(crate) fn main(module: &Module, precision: Precision, runs: Option<Runs>) -> String {
+    main_by("::gyro_runner::child::main", module, precision, runs)
+}
+
+/// The same with another function that answers requests.
+pub(crate) fn main_by(answer: &str, module: &Module, precision: Precision, runs: Option<Runs>) -> String {
     let (type_name, precision) = (&module.type_name, precision.name());
     let builder = match runs {
         Some(runs) => runs.builder(module, precision),
@@ -118,7 +129,7 @@ fn build<T: ::gyro_sim::Scalar>(parameters: &[f64]) -> mechanism::{type_name}<T>
 }}
 
 fn main() -> ::std::process::ExitCode {{
-    ::gyro_runner::child::main(|parameters| (build::<{precision}>(parameters), {builder}))
+    {answer}(|parameters| (build::<{precision}>(parameters), {builder}))
 }}
 "
     )

@@ -28,6 +28,10 @@ pub(crate) struct Scene {
     pub(crate) moved: Vec<Move>,
     pub(crate) engine: Engine,
     pub(crate) precision: Precision,
+    /// How long generated code is searched for short forms.
+    pub(crate) effort: gyro_codegen::Effort,
+    /// Whether what is compiled in the process is proved first.
+    pub(crate) proves: bool,
     /// Whether the run is compared with other ones of the same mechanism.
     pub(crate) has_companions: bool,
 }
@@ -37,6 +41,11 @@ impl Scene {
     pub(crate) fn new(args: &SimulateArgs) -> Result<Self, Failure> {
         let page = read_counting_work(&args.model)?;
         remarks::report_redundant(&page, &args.model.display().to_string(), args.strict)?;
+        Self::of(page, files::shown(&args.model), args)
+    }
+
+    /// The same of a model that was read before.
+    pub(crate) fn of(page: Model, page_name: String, args: &SimulateArgs) -> Result<Self, Failure> {
         let model = with_parameters(&page, &args.set)?;
         refuse_joint_coordinates(&model, args)?;
         let (settings, approach) = (settings(&model, args), approach(&model, args));
@@ -48,7 +57,6 @@ impl Scene {
         let assembled =
             model.assemble().map_err(|e| Failure::Usage(format!("{}: {e}", args.model.display())))?;
         let start = Start { inputs, ..start(&model, &assembled) };
-        let page_name = files::shown(&args.model);
         let moved = assembled.moved;
         Ok(Self {
             page,
@@ -62,6 +70,8 @@ impl Scene {
             moved,
             engine: args.engine(),
             precision: args.precision,
+            effort: args.effort.into(),
+            proves: proves(args),
             has_companions: args.verify,
         })
     }
@@ -82,21 +92,40 @@ impl Scene {
     }
 }
 
+#[cfg(feature = "jit")]
+fn proves(args: &SimulateArgs) -> bool {
+    args.prove
+}
+
+#[cfg(not(feature = "jit"))]
+fn proves(_: &SimulateArgs) -> bool {
+    false
+}
+
 /// Reads and checks a model file; tables of motions are beside it.
 pub(crate) fn read(path: &Path) -> Result<Model, Failure> {
     let text = files::read_module(path)?;
     let _spinner = Spinner::new(format!("reading {}", path.display()));
-    let folder = path.parent().unwrap_or(Path::new(""));
+    read_text(&path.display().to_string(), &text, path.parent().unwrap_or(Path::new("")))
+}
+
+/// Checks the text of a model file; tables of motions are in `folder`.
+pub(crate) fn read_text(file: &str, text: &str, folder: &Path) -> Result<Model, Failure> {
     let mut load = |table: &str| {
         let path = folder.join(table);
         files::input(&path, files::LARGEST_TABLE).map_err(|e| format!("{}: {e}", path.display()))
     };
-    gyro_model::read_with(&path.display().to_string(), &text, &mut load).map_err(Failure::ModelFile)
+    gyro_model::read_with(file, text, &mut load).map_err(Failure::ModelFile)
 }
 
 /// The same for a run, whose balance of energy needs the work even where the model file leaves it out of the module.
 pub(crate) fn read_counting_work(path: &Path) -> Result<Model, Failure> {
-    read(path).map(|model| Model { counts_work: true, ..model })
+    read(path).map(counting_work)
+}
+
+/// A model for runs.
+pub fn counting_work(model: Model) -> Model {
+    Model { counts_work: true, ..model }
 }
 
 /// Joint coordinates are for generated code of mechanisms that have them: which of the two is missing, and what to
@@ -118,7 +147,7 @@ fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs) -> Result<(), Fa
             "runtime-assembled models run in maximal coordinates: for joint coordinates leave out --engine"
                 .to_owned()
         }
-        (Engine::Generated, None) => return Ok(()),
+        (_, None) => return Ok(()),
     };
     Err(Failure::Usage(format!("--coordinates joint: {words}")))
 }
@@ -134,7 +163,7 @@ fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Fa
 
 /// What the engine and the model allow.
 fn offers(model: &Model, args: &SimulateArgs) -> Offers {
-    let is_generated = args.engine() == Engine::Generated;
+    let is_generated = args.engine().is_generated();
     let joint_space = is_generated && gyro_codegen::lacks_joint_coordinates(model).is_none();
     let epsilon = match args.precision {
         Precision::F32 => f64::from(f32::EPSILON),
@@ -232,12 +261,13 @@ pub(crate) fn start(model: &Model, assembled: &gyro_model::Start) -> Start {
             .collect(),
         angles,
         inputs: Vec::new(),
+        knots: model.knots(),
         observed_bodies: observed(model).into_iter().map(|(moving_body, _)| moving_body).collect(),
     }
 }
 
 /// Slot and name of each free body.
-pub(crate) fn observed(model: &Model) -> Vec<(usize, &str)> {
+pub fn observed(model: &Model) -> Vec<(usize, &str)> {
     let bodies = model.coordinate_bodies().into_iter().map(|b| &model.bodies[b]).enumerate();
     bodies
         .filter(|(_, b)| b.support == Support::Free)

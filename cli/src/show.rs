@@ -1,13 +1,14 @@
 //! `cargo xtask show`: a page in which a model moves.
 
 mod describe;
+mod live;
 
 use crate::args::{Change, Engine, ShowArgs, SimulateArgs};
 use crate::failure::Failure;
 use crate::scene::Scene;
 use crate::verdict::Outcome;
 use crate::write::{self, Known};
-use crate::{simulate, words};
+use crate::{remarks, simulate, words};
 use gyro_assembled::Recursive;
 use gyro_model::{Model, Output, OutputKind};
 use gyro_runner::{Coordinates, Correction, Integrator, Sample};
@@ -29,6 +30,16 @@ pub(crate) fn show(args: &ShowArgs) -> Result<(), Failure> {
         scenes.push(Scene::new(&changed(&args.simulate, &args.compare)?)?);
     }
     let names = names(&scenes, &args.compare);
+    let live = match (args.live, scenes.first_mut()) {
+        (true, Some(scene)) => {
+            if args.reactions {
+                add_reactions(scene);
+            }
+            let method = (args.simulate.integrator, args.simulate.tolerance);
+            Some(live::live(scene, method)?)
+        }
+        _ => None,
+    };
     let mut shown = Vec::new();
     let mut n_samples = 0;
     let mut incomplete = None;
@@ -41,11 +52,11 @@ pub(crate) fn show(args: &ShowArgs) -> Result<(), Failure> {
         n_samples += samples.len();
         shown.push(describe::scene(&scene, name, &samples));
     }
-    let html = gyro_show::page(&shown[0].mechanism.name.clone(), &shown);
+    let html = gyro_show::page(&shown[0].mechanism.name.clone(), &shown, live.as_ref());
     write::write(&path, &html, Known::Mark(gyro_show::MARK))?;
     let size = html.len().div_ceil(1000);
     let samples = words::count(n_samples as u64, "sample");
-    simulate::say(&format!(
+    remarks::say(&format!(
         "wrote {} ({size} kB, {samples}): open it in a browser, from disk\n",
         path.display()
     ))?;
@@ -101,10 +112,19 @@ fn quickest(model: &Model, args: &SimulateArgs) -> Engine {
 
 /// The options of the second run: what is changed replaces what the first run has.
 fn changed(args: &SimulateArgs, changes: &[Change]) -> Result<SimulateArgs, Failure> {
-    let mut args = with_engine(args)?;
+    let mut args = args.clone();
+    let model =
+        changes.iter().find_map(|change| if let Change::Model(path) = change { Some(path) } else { None });
+    if let Some(path) = model {
+        args.model.clone_from(path);
+        args.set.clear();
+        args.input.clear();
+    }
+    let mut args = with_engine(&args)?;
     for change in changes {
         match change {
             Change::Engine(engine) => args.engine = Some(*engine),
+            Change::Model(_) => {}
             Change::Set(name, value) => {
                 args.set.retain(|(set, _)| set != name);
                 args.set.push((name.clone(), value.clone()));
@@ -117,15 +137,15 @@ fn changed(args: &SimulateArgs, changes: &[Change]) -> Result<SimulateArgs, Fail
 /// By what the runs differ.
 fn names(scenes: &[Scene], changes: &[Change]) -> Vec<String> {
     let name = |scene: &Scene| {
-        let differences = changes.iter().map(|change| match change {
-            Change::Engine(_) => scene.engine.name().to_owned(),
+        let difference = |change: &Change| match change {
+            Change::Engine(_) => Some(scene.engine.name().to_owned()),
+            Change::Model(_) => Some(Path::new(&scene.page_name).file_stem()?.to_string_lossy().into_owned()),
             Change::Set(name, _) => {
-                let parameter = scene.model.parameters.iter().find(|p| p.name == *name);
-                let value = parameter.map_or(f64::NAN, |p| gyro_model::to_f64(&p.value));
-                format!("{name} = {value}")
+                let parameter = scene.model.parameters.iter().find(|p| p.name == *name)?;
+                Some(format!("{name} = {}", gyro_model::to_f64(&parameter.value)))
             }
-        });
-        let differences: Vec<String> = differences.collect();
+        };
+        let differences: Vec<String> = changes.iter().filter_map(difference).collect();
         if differences.is_empty() { scene.engine.name().to_owned() } else { differences.join(", ") }
     };
     scenes.iter().map(name).collect()

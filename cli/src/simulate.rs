@@ -3,14 +3,17 @@
 use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::folder::Folder;
+#[cfg(feature = "jit")]
+use crate::jit;
 use crate::progress::Progress;
+use crate::quicker::Took;
+use crate::remarks::say;
 use crate::scene::Scene;
 use crate::verdict::{self, Outcome};
 use crate::write::{self, Known};
-use crate::{columns, json, linearization, nested, plot, remarks, summary, words};
+use crate::{columns, interrupt, json, linearization, nested, plot, quicker, remarks, summary, words};
 use gyro_assembled::{Form, QuickLookError, quick_look};
 use gyro_runner::{Event, Sample, Summary};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Simulates a model, prints a summary and writes its files.
@@ -19,8 +22,10 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let opened = folder(args, &scene.model.name)?;
     let folder = opened.as_ref().map(Folder::path);
     let mut outcome = Outcome::default();
-    if let Err(failure) = run(&scene, &mut outcome) {
-        return Err(keep_what_there_is(&scene, &outcome.samples, folder, failure));
+    match run(&scene, &mut outcome) {
+        Ok(()) => {}
+        Err(Failure::Interrupted(_)) => return Err(keep_the_part(args, &scene, &outcome.samples, folder)?),
+        Err(failure) => return Err(keep_what_there_is(&scene, &outcome.samples, folder, failure)),
     }
     let written = match folder {
         Some(folder) => write_files(&scene, &outcome.samples, folder)?,
@@ -46,22 +51,46 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         summary::text(&scene, &outcome.samples, &outcome.summary, &(verdict + &linear), &written)
     };
     say(&text)?;
+    if !args.json
+        && let Some(words) = quicker::words(outcome.took)
+    {
+        remarks::note(&words);
+    }
     worthless.map_or(Ok(()), Err)
 }
 
-/// Whoever closes the pipe has read enough; any other loss of output is a failure.
-pub(crate) fn say(text: &str) -> Result<(), Failure> {
-    let mut stdout = std::io::stdout();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::Run(format!("standard output cannot be written: {error}")))
-        }
-        _ => Ok(()),
+/// Runs a scene, prints its summary and writes its table and plots to a folder.
+pub(crate) fn simulate_scene(scene: &Scene, folder: &Path) -> Result<(), Failure> {
+    let opened = Folder::open(folder)?;
+    let mut outcome = Outcome::default();
+    if let Err(failure) = run(scene, &mut outcome) {
+        return Err(keep_what_there_is(scene, &outcome.samples, Some(opened.path()), failure));
     }
+    let written = write_files(scene, &outcome.samples, opened.path())?;
+    say(&summary::text(scene, &outcome.samples, &outcome.summary, "", &written))
 }
 
 /// Runs a scene; what there is up to a failure is kept in the outcome.
 pub(crate) fn run(scene: &Scene, outcome: &mut Outcome) -> Result<(), Failure> {
+    let mut took = Took::default();
+    follow(scene, outcome, |tell| match scene.engine {
+        Engine::Generated => nested::simulate(scene, tell, &mut took),
+        #[cfg(feature = "jit")]
+        Engine::Jit => jit::simulate(scene, tell),
+        Engine::Assembled => assembled(scene, Form::for_model(&scene.model), tell),
+        Engine::Dense => assembled(scene, Form::Dense, tell),
+        Engine::Recursive => assembled(scene, Form::Recursive, tell),
+    })?;
+    outcome.took = took;
+    Ok(())
+}
+
+/// The same with whatever makes the run.
+pub(crate) fn follow(
+    scene: &Scene,
+    outcome: &mut Outcome,
+    run: impl FnOnce(&mut dyn FnMut(Event<'_>)) -> Result<Summary, Failure>,
+) -> Result<(), Failure> {
     let mut progress = Progress::new(scene.settings.t_end);
     let Outcome { samples, linear, stopped, .. } = outcome;
     let mut tell = |event: Event<'_>| match event {
@@ -71,12 +100,7 @@ pub(crate) fn run(scene: &Scene, outcome: &mut Outcome) -> Result<(), Failure> {
         Event::Forecast(forecast) => progress.foretold(&forecast),
         Event::Progress(t) => progress.reached(t),
     };
-    let summary = match scene.engine {
-        Engine::Generated => nested::simulate(scene, &mut tell),
-        Engine::Assembled => assembled(scene, Form::for_model(&scene.model), &mut tell),
-        Engine::Dense => assembled(scene, Form::Dense, &mut tell),
-        Engine::Recursive => assembled(scene, Form::Recursive, &mut tell),
-    };
+    let summary = run(&mut tell);
     progress.finish();
     outcome.summary = summary.map_err(|failure| with_link(scene, outcome, failure))?;
     Ok(())
@@ -100,9 +124,11 @@ fn assembled(scene: &Scene, form: Form, tell: &mut dyn FnMut(Event<'_>)) -> Resu
         Precision::F32 => gyro_assembled::Precision::Single,
         Precision::F64 => gyro_assembled::Precision::Double,
     };
-    let outcome =
-        quick_look(&scene.model, (form, precision), (&scene.settings, &scene.approach), &scene.start, tell);
-    outcome.map_err(|error| match error {
+    let plan = (&scene.settings, &scene.approach);
+    let _interruptible = interrupt::Run::begin();
+    let mut told = interrupt::interruptible(tell);
+    quick_look(&scene.model, (form, precision), plan, &scene.start, &mut told).map_err(|error| match error {
+        QuickLookError::Run(_) if interrupt::was_interrupted() => interrupt::failure(),
         QuickLookError::Start(error) => Failure::Usage(error.to_string()),
         QuickLookError::Run(refused @ gyro_runner::Failure::Refused(_)) => {
             Failure::Usage(refused.to_string())
@@ -157,6 +183,28 @@ fn write_table(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<PathB
 
 fn remove_plots(scene: &Scene, folder: &Path) {
     plot::NAMES.iter().for_each(|name| write::remove(&plot_path(&scene.model.name, name, folder)));
+}
+
+/// After an interruption: the files and the summary of the part that was computed.
+fn keep_the_part(
+    args: &SimulateArgs,
+    scene: &Scene,
+    samples: &[Sample],
+    folder: Option<&Path>,
+) -> Result<Failure, Failure> {
+    let Some(last) = samples.last() else { return Ok(interrupt::failure()) };
+    let written = match folder {
+        Some(folder) => write_files(scene, samples, folder)?,
+        None => Vec::new(),
+    };
+    if !args.json {
+        say(&summary::of_part(scene, last, &written))?;
+    }
+    let samples = words::count(samples.len() as u64, "sample");
+    Ok(Failure::Interrupted(format!(
+        "interrupted: the run of {} s is incomplete; it has {samples} up to t = {} s",
+        scene.settings.t_end, last.t
+    )))
 }
 
 /// After a failure in the middle of a run: the samples before it are worth keeping; plots of an earlier run would belie

@@ -3,7 +3,7 @@
 
 use crate::failure::Failure;
 use crate::progress::Spinner;
-use crate::{chain, scene};
+use crate::{chain, files, places, scene};
 use gyro_assembled::Dense;
 use gyro_codegen::Functions;
 use gyro_model::{Model, Number, Parameter, Rational};
@@ -77,7 +77,8 @@ fn models(pages: &[PathBuf]) -> Result<Vec<Model>, Failure> {
     if pages.is_empty() {
         let chain = gyro_model::read("chain.toml", &chain::model_file(4))
             .map_err(|e| Failure::Usage(e.to_string()))?;
-        return Ok(vec![scene::read(&crate::files::root().join("models/gyroscope.toml"))?, chain]);
+        let root = files::workspace().ok_or_else(places::no_model_file)?;
+        return Ok(vec![scene::read(&root.join("models/gyroscope.toml"))?, chain]);
     }
     pages.iter().map(|page| scene::read(page)).collect()
 }

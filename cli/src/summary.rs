@@ -5,8 +5,9 @@ use crate::scene::Scene;
 use crate::words::{count, number, table};
 use crate::{columns, compare, remarks, verdict};
 use gyro_assembled::Careful;
+use gyro_codegen::Effort;
 use gyro_model::{Model, Move};
-use gyro_runner::{Approach, Coordinates, Correction, JointSample, Sample, Settings, Summary, When};
+use gyro_runner::{Approach, Between, Coordinates, Correction, JointSample, Sample, Settings, Summary, When};
 use gyro_sim::Statistics;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -33,13 +34,28 @@ pub(crate) fn text(
     text += &quality(scene, samples, run, last);
     text += &compare::text(scene, samples);
     text += verdict;
-    if !written.is_empty() {
-        text.push('\n');
-    }
-    for path in written {
-        let _ = writeln!(text, "wrote {}", path.display());
-    }
-    text
+    text + &files(written)
+}
+
+/// The summary of a run that was interrupted.
+pub(crate) fn of_part(scene: &Scene, last: &Sample, written: &[PathBuf]) -> String {
+    let mut text = format!(
+        "{}: interrupted at t = {} s of {} s\nengine {}, {}\n",
+        scene.model.name,
+        last.t,
+        scene.settings.t_end,
+        engine(scene),
+        scene.precision.name()
+    );
+    text += &motion(&scene.model, last);
+    text += &outputs(&scene.model, last);
+    text + &files(written)
+}
+
+/// What was written.
+fn files(written: &[PathBuf]) -> String {
+    let lines: String = written.iter().map(|path| format!("wrote {}\n", path.display())).collect();
+    if written.is_empty() { lines } else { format!("\n{lines}") }
 }
 
 fn head(scene: &Scene, run: &Summary, last: &Sample) -> String {
@@ -87,8 +103,23 @@ fn engine(scene: &Scene) -> String {
     let name = scene.engine.name();
     match Careful::<f64>::supports(&scene.model) {
         Err(reason) if scene.engine == Engine::Assembled => format!("{name} (in its dense form: {reason})"),
+        _ if scene.engine.is_generated() => format!("{name}{}", searched(scene)),
         _ => name.to_owned(),
     }
+}
+
+/// What was searched, and whether it was proved, where that is not as usual.
+fn searched(scene: &Scene) -> String {
+    let effort = match scene.effort {
+        Effort::Full => "",
+        Effort::Quick => " (quick: few forms were searched)",
+    };
+    let proof = match (scene.engine, scene.proves) {
+        (Engine::Generated, _) => "",
+        (_, true) => ", proved",
+        (_, false) => ", not proved",
+    };
+    format!("{effort}{proof}")
 }
 
 /// Degrees of freedom, and what inputs are set to.
@@ -107,7 +138,12 @@ fn mechanism(scene: &Scene) -> String {
             None => writeln!(text, "input {} = {:?}", input.name, gyro_model::to_f64(&input.value)),
             Some([[_, value]]) => writeln!(text, "input {} = {value:?}", input.name),
             Some(rows) => {
-                writeln!(text, "input {}: table of {}", input.name, count(rows.len() as u64, "row"))
+                let between = match given.map(|given| given.between) {
+                    Some(Between::Held) => ", held",
+                    Some(Between::Smooth) => ", smooth",
+                    _ => "",
+                };
+                writeln!(text, "input {}: table of {}{between}", input.name, count(rows.len() as u64, "row"))
             }
         };
     }

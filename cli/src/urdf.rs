@@ -51,21 +51,26 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
             "{out} exists: choose another place with --out, or give --force"
         )));
     }
-    let file = args.file.display().to_string();
-    let text = files::input(&args.file, files::LARGEST_MODEL_FILE)
-        .map_err(|e| Failure::Usage(format!("{file} cannot be read: {e}")))?;
     write::check(&out, Known::Mark(MARK))?;
-    let root = if args.floating { Root::Floating } else { Root::Fixed };
-    let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let ImportArgs { motors, armature, limits, .. } = *args;
-    let wishes = Wishes { root, motors, armature, limits, wrenches: &args.wrenches };
-    let (page, mut remarks) = convert(&file, &shown, &text, wishes).map_err(Failure::Usage)?;
+    let (page, mut remarks) = converted(args)?;
     let model = gyro_model::read(&out.display().to_string(), &page).map_err(Failure::ModelFile)?;
     write::write(&out, &page, Known::Mark(MARK))?;
     remarks.extend(model.nearly_exact.iter().cloned());
     // What was said is only about a file that is there already.
     let _ = std::io::stdout().write_all(report(&out, &model, &remarks).as_bytes());
     Ok(())
+}
+
+/// The model file and what is not in it.
+pub(crate) fn converted(args: &ImportArgs) -> Result<(String, Vec<String>), Failure> {
+    let file = args.file.display().to_string();
+    let text = files::input(&args.file, files::LARGEST_MODEL_FILE)
+        .map_err(|e| Failure::Usage(format!("{file} cannot be read: {e}")))?;
+    let root = if args.floating { Root::Floating } else { Root::Fixed };
+    let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let ImportArgs { motors, armature, limits, .. } = *args;
+    let wishes = Wishes { root, motors, armature, limits, wrenches: &args.wrenches };
+    convert(&file, &shown, &text, wishes).map_err(Failure::Usage)
 }
 
 /// The model file of a robot and what is not on it; or every mistake of the file, a line for each.

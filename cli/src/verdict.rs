@@ -6,6 +6,7 @@
 
 use crate::args::{Engine, Precision};
 use crate::failure::Failure;
+use crate::quicker::Took;
 use crate::scene::Scene;
 use crate::words::{count, number, table};
 use crate::{columns, remarks};
@@ -41,6 +42,8 @@ pub(crate) struct Outcome {
     pub(crate) linear: Option<Linear>,
     /// The last state before a failure, and its time.
     pub(crate) stopped: Option<(f64, Vec<f64>)>,
+    /// Of a program of generated code.
+    pub(crate) took: Took,
 }
 
 /// Judges a run. `run` makes companions: one whose own energy balance is open, or whose joints come apart, is taken
@@ -75,15 +78,14 @@ pub(crate) fn verdict(
 
 /// Scenes to compare with, the best first.
 fn companions(scene: &Scene) -> Vec<Scene> {
-    let vary = scene.start.inputs.iter().any(|input| input.rows.len() > 1);
     let double = |(settings, approach): (Settings, Approach)| {
         // Only generated code has joint coordinates.
-        let engine =
-            if approach.coordinates == Coordinates::Joint { Engine::Generated } else { scene.engine };
+        let has_them = approach.coordinates != Coordinates::Joint || scene.engine.is_generated();
+        let engine = if has_them { scene.engine } else { Engine::Generated };
         let approach = Approach { patience: None, ..approach };
         Scene { precision: Precision::F64, engine, settings, approach, ..scene.clone() }
     };
-    gyro_runner::companions(&scene.settings, &scene.approach, vary).into_iter().map(double).collect()
+    gyro_runner::companions(&scene.settings, &scene.approach).into_iter().map(double).collect()
 }
 
 fn compare(scene: &Scene, outcome: &Outcome, companion: &Scene, other: &Outcome) -> Verdict {

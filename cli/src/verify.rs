@@ -5,19 +5,19 @@ use crate::failure::Failure;
 use crate::invocation::program;
 use crate::places::{Place, all_model_files, module_path};
 use crate::progress::Spinner;
+use crate::remarks::say;
 use crate::words::count;
 use crate::{files, remarks, rounding, scene, stability};
 use gyro_codegen::Module;
 use gyro_model::Model;
 use gyro_verifier::{Depth, Report, Seed, verify, verify_at, with_proof};
 use rayon::prelude::*;
-use std::io::Write;
+use std::fs;
 use std::path::Path;
-use std::{fs, io};
 
 /// Verifies the modules of the models, prints what was proved, and fails unless all was.
 pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
-    let places = Place::of_workspace(&files::root());
+    let places = Place::all();
     let pages = if args.models.is_empty() { all_model_files(&places)? } else { args.models.clone() };
     if args.rounding {
         let tables: Result<Vec<rounding::Table>, Failure> =
@@ -72,10 +72,6 @@ fn read_module(places: &[Place], page: &Path) -> Result<(Model, [String; 2]), Fa
     };
     let texts = [read(&path)?, read(&path.with_extension("exact"))?];
     Ok((model, texts))
-}
-
-fn say(text: &str) -> Result<(), Failure> {
-    io::stdout().write_all(text.as_bytes()).map_err(|e| Failure::Run(format!("standard output: {e}")))
 }
 
 /// Proves a module that was just made, for the commands that make one. What is refuted is refused; what is undecided is

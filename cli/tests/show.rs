@@ -38,6 +38,23 @@ fn head(page: &Path) -> Value {
 }
 
 #[test]
+fn a_run_of_another_model_file_is_shown_over_the_first() {
+    let folder = Folder::new("other");
+    let page = folder.0.join("pendulum.html");
+    let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/compound-pendulum.toml");
+    let other = other.to_str().unwrap();
+    let options = ["--t-end", "0.1", "--set", "length=0.3", "--compare", other];
+    let output = show("examples/pendulum.toml", &page, &options);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let head = head(&page);
+    let scenes = head["scenes"].as_array().unwrap();
+    let names: Vec<&str> = scenes.iter().map(|s| s["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["pendulum", "compound-pendulum"]);
+    assert_eq!(scenes[0]["mechanism"]["joints"][0]["ends"][1]["point"][1], 0.3);
+    assert_eq!(scenes[1]["mechanism"]["name"], "compound_pendulum");
+}
+
+#[test]
 fn two_runs_are_on_one_page() {
     let folder = Folder::new("two");
     let page = folder.0.join("deep/pendulum.html");
@@ -79,7 +96,7 @@ fn mistakes_are_found_before_the_run() {
     for (options, words) in [
         (&["--json"][..], "--json is an option of simulate"),
         (&["--linearize", "0"], "--linearize is an option of simulate"),
-        (&["--compare", "steam"], "PARAMETER=VALUE or an engine was expected"),
+        (&["--compare", "steam"], "PARAMETER=VALUE, an engine or a model file was expected"),
         (&["--compare", "mass=1"], "mass"),
         (&["--coordinates", "joint", "--engine", "dense"], "--coordinates joint"),
     ] {

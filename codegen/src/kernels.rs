@@ -264,7 +264,8 @@ mod tests {
     fn cost(page: &str, elimination: Elimination, wanted: &[Kernel]) -> usize {
         let model = gyro_model::read("page.toml", page).expect("a model file without mistakes");
         let start = model.assemble().expect("a start");
-        let mut equations = crate::equations(&model, (elimination, &Functions::usual()), &start);
+        let mut equations =
+            crate::equations(&model, (elimination, &Functions::usual(), crate::Effort::Full), &start);
         let mut kernels = Kernels::of(&equations);
         kernels.finish(&mut equations.graph, equations.passes);
         let of = |&kernel: &Kernel| Operations::count(&equations.graph, kernels.roots(kernel)).total();

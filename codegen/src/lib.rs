@@ -39,6 +39,7 @@
 #![deny(missing_docs)]
 
 mod derive;
+mod effort;
 mod emit;
 mod equations;
 mod expr;
@@ -46,15 +47,20 @@ mod groups;
 mod joint_space;
 mod kernels;
 mod repeat;
+mod scheduled;
 mod selection;
 mod simplify;
 mod solve;
+pub mod tape;
 
+pub use effort::Effort;
 pub use emit::data_sheet::{DataSheet, Function, large};
+pub use equations::Argument;
 pub use expr::schedule::{Operations, Passes};
 pub use groups::{Functions, Group};
 pub use kernels::Kernel;
 pub use repeat::Repetition;
+pub use scheduled::{JointForm, JointPlace, Scheduled, ScheduledKernel, Variable};
 pub use selection::UnknownFunction;
 pub use simplify::cheapest::Form;
 pub use simplify::normal_form::Reduction;
@@ -193,7 +199,7 @@ pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> 
         Some(names) => Functions::named(names.iter().map(String::as_str)).map_err(Error::Functions)?,
         None => Functions::usual(),
     };
-    write(file_name, model, (elimination, &functions))
+    write(file_name, model, (elimination, &functions, Effort::Full))
 }
 
 /// The same with given functions, whatever the model file asks for.
@@ -201,16 +207,25 @@ pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> 
 /// # Errors
 /// Why no consistent start exists.
 pub fn generate_functions(file_name: &str, model: &Model, functions: &Functions) -> Result<Module, Error> {
-    write(file_name, model, (Elimination::NullSpace, functions))
+    generate_by_effort(file_name, model, functions, Effort::Full)
 }
 
-fn write(
+/// The same with a given effort.
+///
+/// # Errors
+/// Why no consistent start exists.
+pub fn generate_by_effort(
     file_name: &str,
     model: &Model,
-    (elimination, functions): (Elimination, &Functions),
+    functions: &Functions,
+    effort: Effort,
 ) -> Result<Module, Error> {
+    write(file_name, model, (Elimination::NullSpace, functions, effort))
+}
+
+fn write(file_name: &str, model: &Model, asked: (Elimination, &Functions, Effort)) -> Result<Module, Error> {
     let start = model.assemble().map_err(Error::Start)?;
-    let mut equations = equations(model, (elimination, functions), &start);
+    let mut equations = equations(model, asked, &start);
     let mut kernels = Kernels::of(&equations);
     kernels.finish(&mut equations.graph, equations.passes);
     let type_name = module::type_name(&model.name);
@@ -219,13 +234,26 @@ fn write(
     Ok(Module { name: model.name.clone(), type_name, code, constants, data_sheet })
 }
 
+/// The kernels of a model as data, with given functions and effort: what [`generate_by_effort`] writes as text,
+/// operation for operation.
+///
+/// # Errors
+/// Why no consistent start exists.
+pub fn schedule(model: &Model, functions: &Functions, effort: Effort) -> Result<Scheduled, Error> {
+    let start = model.assemble().map_err(Error::Start)?;
+    let mut equations = equations(model, (Elimination::NullSpace, functions, effort), &start);
+    let mut kernels = Kernels::of(&equations);
+    kernels.finish(&mut equations.graph, equations.passes);
+    Ok(Scheduled::of(&equations, &kernels, &start))
+}
+
 /// From the model to what its module computes: derives, solves and chooses.
 fn equations<'m>(
     model: &'m Model,
-    (elimination, functions): (Elimination, &Functions),
+    (elimination, functions, effort): (Elimination, &Functions, Effort),
     start: &Start,
 ) -> Equations<'m> {
-    let mut system = System::new(model);
+    let mut system = System::with_effort(model, effort);
     let textbook = Textbook::derive(&mut system);
     let functions = &functions.clone().of_mechanism(facts(&system));
     // Accelerations at any state are a form of those at corrected states, too.

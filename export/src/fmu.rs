@@ -13,6 +13,7 @@ use quick_xml::Writer;
 use quick_xml::events::BytesText;
 use std::fmt::Write as _;
 use std::io;
+pub(crate) use variables::states;
 use variables::{Variable, base_units, number, variables};
 
 /// A method of co-simulation.

@@ -8,6 +8,7 @@ use crate::expressions::{number, place, value};
 use crate::module::{Module, arguments, whole};
 use crate::names::Names;
 use quote::ToTokens;
+use std::iter;
 use syn::{Block, Expr, ExprCall, ExprForLoop, ImplItemFn, Item, Local, Pat, ReturnType, Stmt, Type};
 
 /// A function in C.
@@ -20,6 +21,16 @@ pub(crate) struct Function {
     /// Its statements, a line each.
     pub(crate) body: Vec<String>,
     pub(crate) name: String,
+    /// What it takes beside the mechanism.
+    pub(crate) arguments: Vec<Argument>,
+}
+
+/// An argument of a function: an array, or a number if it has no size.
+#[derive(Debug)]
+pub(crate) struct Argument {
+    pub(crate) name: String,
+    pub(crate) size: Option<usize>,
+    pub(crate) is_written: bool,
 }
 
 /// Writes a function.
@@ -27,11 +38,11 @@ pub(crate) fn function(module: &Module, names: &Names, of: &ImplItemFn) -> Resul
     let rust_name = of.sig.ident.to_string();
     let mut writer = Writer { names, lines: Vec::new(), indent: 1 };
     let mut parameters = vec![format!("const {} *m", names.prefix)];
-    let mut arguments_in_c = vec!["m".to_owned()];
+    let mut taken = Vec::new();
     for (name, ty) in arguments(of) {
-        let name = names.variable(&name);
-        parameters.push(shape(module, ty)?.parameter(names, &name));
-        arguments_in_c.push(name);
+        let (name, shape) = (names.variable(&name), shape(module, ty)?);
+        parameters.push(shape.parameter(names, &name));
+        taken.push(shape.argument(name));
     }
     if let ReturnType::Type(_, ty) = &of.sig.output {
         let shape = match &**ty {
@@ -41,11 +52,12 @@ pub(crate) fn function(module: &Module, names: &Names, of: &ImplItemFn) -> Resul
             ty => Shape { is_written: true, ..shape(module, ty)? },
         };
         parameters.push(shape.parameter(names, "out"));
-        arguments_in_c.push("out".to_owned());
+        taken.push(shape.argument("out".to_owned()));
     }
     writer.block(&of.block, &Tail::Result)?;
-    arguments_in_c.retain(|name| !writer.lines.iter().any(|line| mentions(line, name)));
-    let mut body: Vec<String> = arguments_in_c.iter().map(|name| format!("    (void){name};")).collect();
+    let all = iter::once("m").chain(taken.iter().map(|argument| argument.name.as_str()));
+    let unused = all.filter(|name| !writer.lines.iter().any(|line| mentions(line, name)));
+    let mut body: Vec<String> = unused.map(|name| format!("    (void){name};")).collect();
     body.extend(writer.lines);
     let name = names.own(&rust_name);
     Ok(Function {
@@ -53,6 +65,7 @@ pub(crate) fn function(module: &Module, names: &Names, of: &ImplItemFn) -> Resul
         head: format!("void {name}({})", parameters.join(", ")),
         body,
         name: rust_name,
+        arguments: taken,
     })
 }
 
@@ -86,6 +99,11 @@ struct Shape {
 }
 
 impl Shape {
+    fn argument(&self, name: String) -> Argument {
+        let size = (!self.sizes.is_empty()).then(|| self.sizes.iter().product());
+        Argument { name, size, is_written: self.is_written }
+    }
+
     fn parameter(&self, names: &Names, name: &str) -> String {
         let real = names.own("real");
         // What points at rows of constants cannot be passed rows of variables before C23.

@@ -96,11 +96,15 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
         let (dy, dx) = (x.value / square, -self.value / square);
         self.with(x, self.value.atan2(x.value), |a, b| dy * a + dx * b)
     }
-    /// The third derivative of a table's curve, a step function, counts as zero: tables are functions of time, and so
-    /// the second derivative's own slope is asked for only by methods that differentiate with respect to time.
+    /// The third derivative of a table's curve is a step function; at a knot it is that of the piece that begins there,
+    /// as a step that begins there needs it.
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
         let [value, first, second] = self.value.spline(knots, pieces);
-        [self.chain(value, first), self.chain(first, second), self.chain(second, T::constant(0.0))]
+        let third = self.value.spline_third(knots, pieces);
+        [self.chain(value, first), self.chain(first, second), self.chain(second, third)]
+    }
+    fn spline_third(self, knots: &[f64], pieces: &[[f64; 4]]) -> Self {
+        Self::new(self.value.spline_third(knots, pieces))
     }
 }
 
@@ -124,6 +128,19 @@ impl<D, M, S, J, const N: usize> ByDuals<D, M, S, J, N> {
     /// The model in dual numbers, for its inputs and parameters: they are not those of the model that is integrated.
     pub fn in_duals_mut(&mut self) -> &mut M {
         &mut self.in_duals
+    }
+
+    /// The derivative at constant time and state: its slopes are those of what the model itself holds, its inputs and
+    /// parameters.
+    pub fn derivative_of_model<T: Scalar>(&self, t: T, y: &[T]) -> S
+    where
+        D: Ode<M, Scalar = Dual<T, N>, State = S>,
+        S: Storage<Dual<T, N>>,
+    {
+        let (mut argument, mut slopes) = (self.state.clone(), self.state.clone());
+        argument.as_mut().iter_mut().zip(y).for_each(|(to, from)| *to = Dual::new(*from));
+        self.dynamics.derivative(&self.in_duals, Dual::new(t), &argument, &mut slopes);
+        slopes
     }
 }
 

@@ -116,11 +116,15 @@ pub mod integrate;
 #[cfg(feature = "lanes")]
 pub mod lanes;
 pub mod pivoting;
+pub mod sampled;
 mod scalar;
+mod sine;
 mod solver;
 pub mod spline;
 mod turns;
 mod violation;
+#[cfg(feature = "wire")]
+mod wire;
 
 pub use apart::apart;
 pub use contract::{
@@ -141,3 +145,7 @@ pub use scalar::{Lanes, Real, Scalar};
 pub use solver::{Control, Passage, Solver, Statistics};
 pub use turns::{JointCoordinate, Turns, refer_turns};
 pub use violation::{Violation, violation};
+
+/// Where this crate's manifest was when it was compiled: the command line packs its sources.
+#[doc(hidden)]
+pub const MANIFEST_FOLDER: &str = env!("CARGO_MANIFEST_DIR");

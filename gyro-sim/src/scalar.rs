@@ -1,6 +1,6 @@
 //! Number types: few operations for the generated kernels, a few more for the solvers around them.
 
-use crate::{charts, fused, spline};
+use crate::{charts, fused, sine, spline};
 use core::fmt::Debug;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -43,6 +43,9 @@ pub trait Scalar:
     /// Lanes of a pack may lie in different pieces.
     #[must_use]
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3];
+    /// The third derivative of the same curve; at a knot that of the piece which begins there.
+    #[must_use]
+    fn spline_third(self, knots: &[f64], pieces: &[[f64; 4]]) -> Self;
 }
 
 /// A scalar that can be compared, as solvers need it.
@@ -205,6 +208,10 @@ impl Scalar for f64 {
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
         spline::evaluate(knots, pieces, self)
     }
+    #[inline]
+    fn spline_third(self, knots: &[f64], pieces: &[[f64; 4]]) -> Self {
+        spline::third(knots, pieces, self)
+    }
 }
 
 impl Real for f64 {
@@ -243,11 +250,11 @@ impl Scalar for f32 {
     }
     #[inline]
     fn sin(self) -> Self {
-        libm::sinf(self)
+        if Real::abs(self) <= sine::LARGEST as Self { sine::sin(self) } else { libm::sinf(self) }
     }
     #[inline]
     fn cos(self) -> Self {
-        libm::cosf(self)
+        if Real::abs(self) <= sine::LARGEST as Self { sine::cos(self) } else { libm::cosf(self) }
     }
     #[inline]
     fn tanh(self) -> Self {
@@ -261,6 +268,10 @@ impl Scalar for f32 {
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
         // Times of a long table differ by less than an f32 can tell.
         spline::evaluate(knots, pieces, f64::from(self)).map(Self::constant)
+    }
+    #[inline]
+    fn spline_third(self, knots: &[f64], pieces: &[[f64; 4]]) -> Self {
+        Self::constant(spline::third(knots, pieces, f64::from(self)))
     }
 }
 

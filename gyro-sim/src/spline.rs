@@ -39,6 +39,11 @@ pub fn evaluate(knots: &[f64], pieces: &[[f64; 4]], t: f64) -> [f64; 3] {
     cubic(&coefficients, t - origin)
 }
 
+/// The third derivative at a time, which jumps at knots: there it is that of the piece that begins.
+pub fn third(knots: &[f64], pieces: &[[f64; 4]], t: f64) -> f64 {
+    6.0 * piece(knots, pieces, t).1[3]
+}
+
 fn cubic([c0, c1, c2, c3]: &[f64; 4], u: f64) -> [f64; 3] {
     [c0 + u * (c1 + u * (c2 + u * c3)), c1 + u * (2.0 * c2 + u * (3.0 * c3)), 2.0 * c2 + u * (6.0 * c3)]
 }

@@ -1,5 +1,7 @@
 //! Continuous joint coordinates: a right-hand side sees an angle only up to whole turns, so the turns are counted here.
 
+#[cfg(feature = "wire")]
+use crate::wire::*;
 use crate::{Coordinate, Mechanism, Real, Scalar};
 
 /// Sets the turn references of a state to their angles, from which integration lets them stray: both are integrated,
@@ -13,7 +15,7 @@ pub fn refer_turns<M: Mechanism>(mechanism: &M, t: M::Scalar, y: &mut M::State) 
 
 /// One coordinate of a joint and its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", derive(SerBin, DeBin))]
 pub enum JointCoordinate<T> {
     /// Continuous angle, rad, positive by the right-hand rule from the first body to the second, and its rate.
     Angle {

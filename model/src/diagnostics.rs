@@ -56,8 +56,8 @@ pub struct Related {
 }
 
 impl Diagnostics {
-    /// Sorts the mistakes by place.
-    pub(crate) fn new(file_name: &str, text: &str, mut mistakes: Vec<Diagnostic>) -> Self {
+    /// The mistakes of a text, sorted by place.
+    pub fn new(file_name: &str, text: &str, mut mistakes: Vec<Diagnostic>) -> Self {
         mistakes.sort_by(|a, b| {
             (a.span.start, a.span.end, &a.message).cmp(&(b.span.start, b.span.end, &b.message))
         });
@@ -69,6 +69,18 @@ impl Diagnostics {
     /// The mistakes in the order of the model file.
     pub fn mistakes(&self) -> &[Diagnostic] {
         &self.mistakes
+    }
+
+    /// The file that they are in.
+    pub fn file_name(&self) -> &str {
+        &self.file_name
+    }
+
+    /// Line and column, in characters, of a place given in bytes; both count from one.
+    pub fn place(&self, at: usize) -> (usize, usize) {
+        let line = self.starts.partition_point(|start| *start <= at).max(1);
+        let before = self.text.get(self.starts[line - 1]..at).unwrap_or_default();
+        (line, before.chars().count() + 1)
     }
 
     /// The mistakes as plain text for a terminal or a log, each with its `file:line:column`: the first thirty, and how

@@ -59,6 +59,8 @@ pub struct Model {
     pub derived_parameters: Vec<DerivedParameter>,
     /// Numbers that the caller sets at every step (motor torques), with their values until then. Only forces use them.
     pub inputs: Vec<Parameter>,
+    /// What each input is between the rows of a table that it may follow.
+    pub between: Vec<Between>,
     /// All bodies, fixed ones included, in the order of the model file.
     pub bodies: Vec<Body>,
     /// All joints in the order of the model file.
@@ -91,6 +93,18 @@ pub struct Parameter {
     pub name: String,
     /// Value, exact.
     pub value: Rational,
+}
+
+/// What an input is between the rows of a table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Between {
+    /// The value of the row before.
+    Held,
+    /// Straight lines.
+    #[default]
+    Linear,
+    /// The natural cubic spline through the rows.
+    Smooth,
 }
 
 /// An entry of `[parameters]` that is computed from others.

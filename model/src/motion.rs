@@ -65,6 +65,15 @@ impl Motion {
         [x.re, x.v1, x.v2]
     }
 
+    /// The knots of its tables.
+    fn add_knots(&self, knots: &mut Vec<f64>) {
+        match self {
+            Self::Polynomial(_) | Self::Sinusoid { .. } => {}
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.add_knots(knots)),
+            Self::Table(spline) => knots.extend(&spline.knots),
+        }
+    }
+
     /// The motion over any scalar.
     pub(crate) fn at<D: Scalar>(&self, model: &Model, t: D) -> D {
         match self {
@@ -80,6 +89,19 @@ impl Motion {
             }
             Self::Table(spline) => spline.at(t),
         }
+    }
+}
+
+impl Model {
+    /// The times at which prescribed motions are not smooth: the knots of all tables.
+    pub fn knots(&self) -> Vec<f64> {
+        let mut knots = Vec::new();
+        self.drivers.iter().for_each(|driver| driver.motion.add_knots(&mut knots));
+        for motion in self.bodies.iter().filter_map(|body| body.motion.as_ref()) {
+            let angles = motion.rotations.iter().map(|(_, angle)| angle);
+            motion.translation.iter().chain(angles).for_each(|motion| motion.add_knots(&mut knots));
+        }
+        knots
     }
 }
 

@@ -1,10 +1,11 @@
 //! Which integrator, in which coordinates, with which correction.
 
+use nanoserde::{DeBin, SerBin};
 use std::fmt;
 use std::str::FromStr;
 
 /// How a motion is computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, SerBin, DeBin)]
 pub struct Approach {
     /// The method.
     pub integrator: Integrator,
@@ -28,7 +29,7 @@ pub struct Approach {
 }
 
 /// The method.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, SerBin, DeBin)]
 pub enum Integrator {
     /// Kutta's classical method of order 4, fixed steps.
     #[default]
@@ -42,7 +43,7 @@ pub enum Integrator {
 }
 
 /// What is integrated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, SerBin, DeBin)]
 pub enum Coordinates {
     /// Positions and Euler parameters of all bodies, the paper's.
     #[default]
@@ -52,7 +53,7 @@ pub enum Coordinates {
 }
 
 /// How constraints are kept.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, SerBin, DeBin)]
 pub enum Correction {
     /// The paper's coordinate partitioning.
     #[default]
@@ -68,7 +69,7 @@ pub enum Correction {
 }
 
 /// When to correct.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, SerBin, DeBin)]
 pub enum When {
     /// After so many steps.
     Steps(u32),

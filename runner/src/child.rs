@@ -12,7 +12,7 @@ use std::time::Duration;
 /// parameters with the builder beside it, and writes the samples to standard output as they come.
 ///
 /// The exit code says whether the last run was complete; the last line of its answer says why not.
-pub fn main<M: Partition<Scalar: Real> + 'static, K: MotionBuilder<M>>(
+pub fn main<M: Partition<Scalar: Real> + Clone + 'static, K: MotionBuilder<M>>(
     build: impl Fn(&[f64]) -> (M, K),
 ) -> ExitCode {
     answer_all(|request, output| {
@@ -48,7 +48,7 @@ pub fn answer_all(mut answer: impl FnMut(&Request, &mut dyn Write) -> Result<Sum
 ///
 /// # Errors
 /// The failure of the run or of its output.
-pub fn answer<M: Partition<Scalar: Real> + 'static>(
+pub fn answer<M: Partition<Scalar: Real> + Clone + 'static>(
     mechanism: &mut M,
     builder: &dyn MotionBuilder<M>,
     request: &Request,

@@ -9,22 +9,21 @@ const FINEST: f64 = 2e-15;
 const PATIENCE: u64 = 2_000_000;
 
 /// Runs to compare with, the best first, in double precision all of them: joint coordinates under error control, where
-/// there are any and inputs are constant; else the same by finer means, and with a correction where the run has none or
-/// its own comes to no end.
-pub fn companions(settings: &Settings, approach: &Approach, inputs_vary: bool) -> Vec<(Settings, Approach)> {
-    let mut companions = Vec::new();
-    if !inputs_vary {
-        let aim = approach.tolerance.unwrap_or(1e-9).min(1e-9) / 100.0;
-        let joint = |integrator, tolerance| Approach {
-            integrator,
-            tolerance: Some(tolerance),
-            coordinates: Coordinates::Joint,
-            budget: Some(PATIENCE),
-            ..Approach::default()
-        };
-        companions.push((*settings, joint(Integrator::Dop853, aim.clamp(FINEST, 1e-12))));
-        companions.push((*settings, joint(Integrator::Rodas4, aim.clamp(1e-12, 1e-9))));
-    }
+/// there are any; else the same by finer means, and with a correction where the run has none or its own comes to no
+/// end.
+pub fn companions(settings: &Settings, approach: &Approach) -> Vec<(Settings, Approach)> {
+    let aim = approach.tolerance.unwrap_or(1e-9).min(1e-9) / 100.0;
+    let joint = |integrator, tolerance| Approach {
+        integrator,
+        tolerance: Some(tolerance),
+        coordinates: Coordinates::Joint,
+        budget: Some(PATIENCE),
+        ..Approach::default()
+    };
+    let mut companions = vec![
+        (*settings, joint(Integrator::Dop853, aim.clamp(FINEST, 1e-12))),
+        (*settings, joint(Integrator::Rodas4, aim.clamp(1e-12, 1e-9))),
+    ];
     let finer = match approach.tolerance {
         Some(tolerance) => {
             // A run's own budget is none for a finer one.

@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn errors_name_time_part_and_number() {
-        let spinner = Spinner::default();
+        let spinner = Spinner::<f64>::default();
         for (error, words) in [
             (
                 Error::NotFinite { t: 0.25, index: 5 },
@@ -218,7 +218,7 @@ mod tests {
             (22, "the work done"),
         ] {
             let error = Error::NotFinite { t: 0.25, index };
-            let found = describe_in(&Spinner::default(), Some(&layout), &error);
+            let found = describe_in(&Spinner::<f64>::default(), Some(&layout), &error);
             assert!(found.starts_with(&format!("at t = 0.25 s {words} is no longer")), "{index}: {found}");
         }
     }

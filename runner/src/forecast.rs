@@ -2,6 +2,7 @@
 
 use crate::motion::Motion;
 use gyro_sim::Mechanism;
+use nanoserde::{DeBin, SerBin};
 use std::time::{Duration, Instant};
 
 /// Fewer steps than this are done before anyone has read a forecast.
@@ -14,7 +15,7 @@ const TRIAL: Duration = Duration::from_millis(20);
 const AT_ONCE: u32 = 16;
 
 /// Steps of a run, and the time that they will take at the pace of the first ones.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, SerBin, DeBin)]
 pub struct Forecast {
     /// Number of steps.
     pub steps: f64,

@@ -1,35 +1,145 @@
-//! Numbers that inputs are set to at every step.
+//! What inputs are over time.
 
 use gyro_sim::{Mechanism, Scalar};
+use nanoserde::{DeBin, SerBin};
 
-/// What one of the mechanism's inputs is over time: linear between the rows of a table, and held beyond its ends. A
-/// table of one row is a constant.
+/// What one of the mechanism's inputs is over time: the rows of a table with what is between them, and held beyond its
+/// ends. A table of one row is a constant.
 ///
-/// Each step of the integrator has the value at its own start, held over the step, as a sampled controller gives it;
-/// each sample has the value at its own time.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+/// Under error control equations see the input at every time, and steps end where it is not smooth. Each step of fixed
+/// length has the value at its own start, held over the step, as a sampled controller gives it. Each sample has the
+/// value at its own time.
+#[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
 pub struct Input {
     /// Index among the mechanism's inputs.
     pub index: usize,
     /// Time, s, and value; times ascend.
     pub rows: Vec<[f64; 2]>,
+    /// What is between the rows.
+    pub between: Between,
+    /// Second derivatives at the rows of a smooth input.
+    bends: Vec<f64>,
+}
+
+/// What an input is between the rows of its table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, SerBin, DeBin)]
+pub enum Between {
+    /// The value of the row before.
+    Held,
+    /// Straight lines.
+    #[default]
+    Linear,
+    /// The natural cubic spline through the rows.
+    Smooth,
 }
 
 impl Input {
-    /// The value at a time; zero for an empty table.
+    /// An input that follows a table.
+    pub fn new(index: usize, rows: Vec<[f64; 2]>, between: Between) -> Self {
+        let bends = if between == Between::Smooth { bends(&rows) } else { Vec::new() };
+        Self { index, rows, between, bends }
+    }
+
+    /// An input that does not change.
+    pub fn constant(index: usize, value: f64) -> Self {
+        Self::new(index, vec![[0.0, value]], Between::Linear)
+    }
+
+    /// The value at a time, at a row that of the row; zero for an empty table.
     pub fn at(&self, t: f64) -> f64 {
         let after = self.rows.partition_point(|[time, _]| *time <= t);
         match (after.checked_sub(1).and_then(|before| self.rows.get(before)), self.rows.get(after)) {
-            (Some([t0, before]), Some([t1, after])) => before + (after - before) * ((t - t0) / (t1 - t0)),
+            (Some([t0, before]), Some([t1, after])) if self.between == Between::Linear => {
+                before + (after - before) * ((t - t0) / (t1 - t0))
+            }
+            (Some(_), Some(_)) => {
+                let (origin, coefficients) = self.piece(t);
+                cubic(&coefficients, t - origin)
+            }
             (Some([_, value]), None) | (None, Some([_, value])) => *value,
             (None, None) => 0.0,
         }
     }
+
+    /// The cubic `c0 + c1 u + c2 u² + c3 u³` that holds from a time on, to the next row, and the time from which its u
+    /// counts.
+    pub(crate) fn piece(&self, t: f64) -> (f64, [f64; 4]) {
+        let after = self.rows.partition_point(|[time, _]| *time <= t);
+        let Some((from, [t1, to])) = after.checked_sub(1).zip(self.rows.get(after)) else {
+            return (t, [self.at(t), 0.0, 0.0, 0.0]);
+        };
+        let [t0, value] = self.rows[from];
+        let (width, rise) = (t1 - t0, to - value);
+        let coefficients = match self.between {
+            Between::Held => [value, 0.0, 0.0, 0.0],
+            Between::Linear => [value, rise / width, 0.0, 0.0],
+            Between::Smooth => {
+                let (bend, next) = (self.bends[from], self.bends[after]);
+                let slope = rise / width - width * (2.0 * bend + next) / 6.0;
+                [value, slope, 0.5 * bend, (next - bend) / (6.0 * width)]
+            }
+        };
+        (t0, coefficients)
+    }
+
+    /// The times at which the input is not smooth: rows at which nothing changes are left out.
+    pub(crate) fn knots(&self) -> impl Iterator<Item = f64> {
+        let times = self.rows.iter().map(|[t, _]| *t);
+        let pieces = times.clone().map(|t| self.piece(t).1);
+        let before = std::iter::once([self.rows.first().map_or(0.0, |row| row[1]), 0.0, 0.0, 0.0]);
+        let changes = pieces.clone().zip(before.chain(pieces)).map(|(after, before)| match self.between {
+            Between::Held => after[0] != before[0],
+            Between::Linear => after[1] != before[1],
+            Between::Smooth => true,
+        });
+        times.zip(changes).filter_map(|(t, changes)| changes.then_some(t)).filter(|_| varies(self))
+    }
+
+    /// The rows, and of a smooth input the extremes between them.
+    pub fn extremes(&self) -> Vec<[f64; 2]> {
+        let mut rows = self.rows.clone();
+        for pair in self.rows.windows(2).filter(|_| self.between == Between::Smooth) {
+            let (origin, [c0, c1, c2, c3]) = self.piece(pair[0][0]);
+            // c1 + 2 c2 u + 3 c3 u² = 0, without cancellation.
+            let discriminant = c2 * c2 - 3.0 * c1 * c3;
+            let sum = -(c2 + discriminant.max(0.0).sqrt().copysign(c2));
+            let turns = [sum / (3.0 * c3), c1 / sum].into_iter().filter(|_| discriminant >= 0.0);
+            let inside = turns.filter(|u| *u > 0.0 && origin + u < pair[1][0]);
+            rows.extend(inside.map(|u| [origin + u, cubic(&[c0, c1, c2, c3], u)]));
+        }
+        rows
+    }
 }
 
-/// Whether any input changes, so that steps must be taken one by one.
+fn cubic([c0, c1, c2, c3]: &[f64; 4], u: f64) -> f64 {
+    c0 + u * (c1 + u * (c2 + u * c3))
+}
+
+/// The second derivatives of the natural cubic spline at its knots: a tridiagonal system, diagonally dominant (de Boor,
+/// *A Practical Guide to Splines*, chapter IV).
+fn bends(rows: &[[f64; 2]]) -> Vec<f64> {
+    let mut bends = vec![0.0; rows.len()];
+    let mut ratios = bends.clone();
+    let slope = |k: usize| (rows[k + 1][1] - rows[k][1]) / (rows[k + 1][0] - rows[k][0]);
+    for k in 1..rows.len().saturating_sub(1) {
+        let (before, after) = (rows[k][0] - rows[k - 1][0], rows[k + 1][0] - rows[k][0]);
+        let pivot = 2.0 * (before + after) - before * ratios[k - 1];
+        ratios[k] = after / pivot;
+        bends[k] = (6.0 * (slope(k) - slope(k - 1)) - before * bends[k - 1]) / pivot;
+    }
+    for k in (1..rows.len().saturating_sub(1)).rev() {
+        bends[k] -= ratios[k] * bends[k + 1];
+    }
+    bends
+}
+
+fn varies(input: &Input) -> bool {
+    input.rows.windows(2).any(|pair| pair[0][1] != pair[1][1])
+}
+
+/// Whether any input changes.
 pub fn any_varies(inputs: &[Input]) -> bool {
-    inputs.iter().any(|input| input.rows.windows(2).any(|pair| pair[0][1] != pair[1][1]))
+    inputs.iter().any(varies)
 }
 
 /// Sets all inputs to their values at a time.
@@ -43,22 +153,52 @@ pub(crate) fn set<M: Mechanism>(mechanism: &mut M, inputs: &[Input], t: f64) {
 mod tests {
     use super::*;
 
+    const ROWS: [[f64; 2]; 3] = [[1.0, 10.0], [2.0, 20.0], [4.0, 0.0]];
+
     #[test]
     fn tables_are_linear_inside_and_held_outside() {
-        let input = Input { index: 0, rows: vec![[1.0, 10.0], [2.0, 20.0], [4.0, 0.0]] };
+        let input = Input::new(0, ROWS.to_vec(), Between::Linear);
         for (t, value) in
             [(0.0, 10.0), (1.0, 10.0), (1.25, 12.5), (2.0, 20.0), (3.5, 5.0), (4.0, 0.0), (9.0, 0.0)]
         {
             assert_eq!(input.at(t), value, "{t}");
         }
-        assert_eq!(Input { index: 0, rows: vec![[5.0, 3.0]] }.at(-1.0), 3.0);
-        assert_eq!(Input { index: 0, rows: vec![] }.at(1.0), 0.0);
+        assert_eq!(Input::new(0, vec![[5.0, 3.0]], Between::Linear).at(-1.0), 3.0);
+        assert_eq!(Input::new(0, vec![], Between::Linear).at(1.0), 0.0);
+    }
+
+    #[test]
+    fn held_inputs_jump_at_their_rows_and_smooth_ones_are_splines() {
+        let held = Input::new(0, ROWS.to_vec(), Between::Held);
+        for (t, value) in [(0.0, 10.0), (1.9, 10.0), (2.0, 20.0), (3.9, 20.0), (4.0, 0.0), (9.0, 0.0)] {
+            assert_eq!(held.at(t), value, "{t}");
+        }
+        // The spline through (0, 0), (1, 1), (3, 0), whose pieces are 1.25 u − u³/4 and 1 + u/2 − 3/4 u² + u³/8.
+        let smooth = Input::new(0, vec![[0.0, 0.0], [1.0, 1.0], [3.0, 0.0]], Between::Smooth);
+        for (t, value) in [(-1.0, 0.0), (0.5, 0.59375), (1.0, 1.0), (2.0, 0.875), (3.0, 0.0), (5.0, 0.0)] {
+            assert!((smooth.at(t) - value).abs() < 1e-15, "{t}: {}", smooth.at(t));
+        }
+        let extremes = smooth.extremes();
+        assert_eq!(extremes.len(), 4, "{extremes:?}");
+        // Where 1/2 − 3/2 u + 3/8 u² vanishes.
+        let u = 2.0 - (8.0_f64 / 3.0).sqrt();
+        assert!((extremes[3][0] - 1.0 - u).abs() < 1e-14, "{extremes:?}");
+    }
+
+    #[test]
+    fn knots_are_where_something_changes() {
+        let rows = vec![[0.0, 1.0], [1.0, 1.0], [2.0, 2.0], [3.0, 3.0], [4.0, 3.0]];
+        let knots = |between| Input::new(0, rows.clone(), between).knots().collect::<Vec<_>>();
+        assert_eq!(knots(Between::Held), [2.0, 3.0]);
+        assert_eq!(knots(Between::Linear), [1.0, 3.0]);
+        assert_eq!(knots(Between::Smooth), [0.0, 1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(Input::constant(0, 2.0).knots().count(), 0);
     }
 
     #[test]
     fn a_table_of_equal_values_does_not_vary() {
-        let constant = Input { index: 0, rows: vec![[0.0, 1.0], [1.0, 1.0]] };
-        let ramp = Input { index: 1, rows: vec![[0.0, 1.0], [1.0, 2.0]] };
+        let constant = Input::new(0, vec![[0.0, 1.0], [1.0, 1.0]], Between::Linear);
+        let ramp = Input::new(1, vec![[0.0, 1.0], [1.0, 2.0]], Between::Linear);
         assert!(!any_varies(std::slice::from_ref(&constant)) && any_varies(&[constant, ramp]));
     }
 }

@@ -36,7 +36,7 @@ pub use companion::{Difference, companions, differences};
 pub use failure::{Failure, describe, describe_in};
 pub use forecast::{Forecast, duration_words};
 pub use grade::{Grade, Judgement, Measure, Reason, balance, judge};
-pub use input::{Input, any_varies};
+pub use input::{Between, Input, any_varies};
 pub use offers::Offers;
 pub use remark::{Promise, Remark};
 pub use run::{Event, Start, run, run_by, scheduled};
@@ -45,6 +45,10 @@ pub use schedule::{Impossible, Schedule, Segment, Settings};
 pub use spectrum::fastest_rate;
 pub use summary::{Summary, Tracker, energy_error};
 pub use timing::{Timing, time_by};
+
+/// Where this crate's manifest was when it was compiled: the command line packs its sources.
+#[doc(hidden)]
+pub const MANIFEST_FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 
 #[cfg(test)]
 mod linkage;

@@ -59,8 +59,6 @@ impl Offers {
             ));
         } else if approach.integrator == Integrator::Rk4 {
             "rk4 has no error estimate: give it a --step instead of a --tolerance, or use tsit5, dop853 or rodas4"
-        } else if self.inputs_vary {
-            "inputs that vary are held over each step, so steps have to be fixed: give a --step instead of a --tolerance"
         } else {
             return None;
         };
@@ -118,7 +116,6 @@ mod tests {
             (Offers::ALL, tolerance(1e10), "a tolerance of 1e10 cannot be met"),
             (single, tolerance(1e-9), "a tolerance of 1e-9 cannot be met"),
             (Offers::ALL, Approach { integrator: Integrator::Rk4, ..controlled }, "rk4 has no error"),
-            (Offers { inputs_vary: true, ..Offers::ALL }, controlled, "inputs that vary are held"),
             (loops, joint, "joint coordinates are for"),
             (loops, Approach { correction: Correction::ClosedForm, ..controlled }, "the closed form is for"),
             (assembled, stiff, "rodas4 needs derivatives"),

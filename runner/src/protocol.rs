@@ -1,17 +1,16 @@
-//! How the command line and the program that it compiles speak with each other: values in CBOR (RFC 8949), which keeps
-//! every bit of a number.
+//! How the command line and the program that it compiles speak with each other: values as bytes, which keep every bit
+//! of a number, each after a mark and its length.
 //!
 //! The command line writes a [`Request`] to the program's standard input; the program answers with [`Reply`] values on
 //! its standard output up to one that ends the run, and waits for the next.
 
 use crate::motion::Linear;
 use crate::{Approach, Forecast, Sample, Settings, Start, Summary, Timing};
-use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
-use std::io::{self, BufRead, Write};
+use nanoserde::{DeBin, SerBin};
+use std::io::{self, BufRead, Read, Write};
 
 /// A run to be made.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
 pub struct Request {
     /// When to step, correct and sample.
     pub settings: Settings,
@@ -26,7 +25,7 @@ pub struct Request {
 }
 
 /// One part of an answer.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
 pub enum Reply {
     /// The mechanism at a sample time.
     Sample(Sample),
@@ -50,29 +49,41 @@ pub enum Reply {
     Refused(String),
 }
 
+/// What stands before each value and its length.
+const MARK: [u8; 4] = *b"gyro";
+
 /// Writes a request or a reply.
 ///
 /// # Errors
 /// That of the output.
-pub fn write<T: Serialize>(output: &mut (impl Write + ?Sized), value: &T) -> io::Result<()> {
-    ciborium::into_writer(value, output).map_err(|error| match error {
-        ciborium::ser::Error::Io(error) => error,
-        ciborium::ser::Error::Value(words) => io::Error::other(words),
-    })
+pub fn write<T: SerBin>(output: &mut (impl Write + ?Sized), value: &T) -> io::Result<()> {
+    let bytes = value.serialize_bin();
+    output.write_all(&MARK)?;
+    output.write_all(&(bytes.len() as u64).to_le_bytes())?;
+    output.write_all(&bytes)
 }
 
 /// Reads a request or a reply; `None` where the input has come to its end.
 ///
 /// # Errors
 /// That of the input, also if it is not such a value or ends in the middle of one.
-pub fn read<T: DeserializeOwned>(input: &mut impl BufRead) -> io::Result<Option<T>> {
+pub fn read<T: DeBin>(input: &mut impl BufRead) -> io::Result<Option<T>> {
     if input.fill_buf()?.is_empty() {
         return Ok(None);
     }
-    ciborium::from_reader(input).map(Some).map_err(|error| match error {
-        ciborium::de::Error::Io(error) => error,
-        error => io::Error::new(io::ErrorKind::InvalidData, error.to_string()),
-    })
+    let (mut mark, mut length) = ([0; MARK.len()], [0; 8]);
+    input.read_exact(&mut mark)?;
+    let invalid = |words: String| io::Error::new(io::ErrorKind::InvalidData, words);
+    if mark != MARK {
+        return Err(invalid("this is not what the other side writes".to_owned()));
+    }
+    input.read_exact(&mut length)?;
+    let length = u64::from_le_bytes(length);
+    let mut bytes = Vec::new();
+    if input.take(length).read_to_end(&mut bytes)? as u64 != length {
+        return Err(io::ErrorKind::UnexpectedEof.into());
+    }
+    T::deserialize_bin(&bytes).map(Some).map_err(|error| invalid(error.to_string()))
 }
 
 #[cfg(test)]
@@ -85,7 +96,7 @@ mod tests {
 
     const AWKWARD: [f64; 7] = [0.1, -1.0 / 3.0, 5e-324, -0.0, f64::MAX, 1e-300, 0.300_000_000_000_000_04];
 
-    fn again<T: Serialize + DeserializeOwned>(value: &T) -> T {
+    fn again<T: SerBin + DeBin>(value: &T) -> T {
         let mut text = Vec::new();
         write(&mut text, value).unwrap();
         read(&mut &text[..]).unwrap().unwrap()
@@ -112,9 +123,14 @@ mod tests {
                     velocities: AWKWARD[..6].to_vec(),
                     turn_references: vec![AWKWARD[1]],
                     angles: vec![],
+                    knots: vec![AWKWARD[3]],
                     inputs: vec![
-                        Input { index: 1, rows: vec![[0.0, AWKWARD[2]], [AWKWARD[0], AWKWARD[4]]] },
-                        Input { index: 0, rows: vec![] },
+                        Input::new(
+                            1,
+                            vec![[0.0, AWKWARD[2]], [AWKWARD[0], AWKWARD[4]]],
+                            crate::Between::Smooth,
+                        ),
+                        Input::new(0, vec![], crate::Between::Held),
                     ],
                     observed_bodies: vec![0, 12],
                 },

@@ -4,7 +4,7 @@ use crate::advice::Plan;
 use crate::failure::behind;
 use crate::forecast::{self, Forecast};
 use crate::input::{any_varies, set};
-use crate::motion::{self, Linear, Motion, MotionBuilder, OperatingPoint};
+use crate::motion::{self, Course, Linear, Motion, MotionBuilder, OperatingPoint};
 use crate::offers::Offers;
 use crate::sample::{Observer, work_scale};
 use crate::spectrum::fastest_rate;
@@ -15,11 +15,12 @@ use crate::{
 use gyro_sim::{
     CorrectedDynamics, Dynamics, Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns,
 };
+use nanoserde::{DeBin, SerBin};
 use std::io;
 use std::time::{Duration, Instant};
 
 /// Where a run starts, what its inputs are set to and what is watched besides joints and outputs.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, SerBin, DeBin)]
 pub struct Start {
     /// `(r, p)` of each body with coordinates.
     pub positions: Vec<f64>,
@@ -32,6 +33,8 @@ pub struct Start {
     pub angles: Vec<f64>,
     /// What the mechanism's inputs are over time; those that are not here stay as they are.
     pub inputs: Vec<Input>,
+    /// Times, s, at which the mechanism's own motions are not smooth: steps under error control end there.
+    pub knots: Vec<f64>,
     /// Indices of the bodies whose pose and velocity are sampled.
     pub observed_bodies: Vec<usize>,
 }
@@ -61,8 +64,8 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 /// Runs a mechanism to a schedule by the paper's method, RK4 and coordinate partitioning, and hands what happens to
 /// `tell`.
 ///
-/// The first sample is the start as given, uncorrected. Where an input varies it is set anew before every step. An
-/// error of `tell` ends the run.
+/// The first sample is the start as given, uncorrected. Where an input varies it is set anew before every step of fixed
+/// length. An error of `tell` ends the run.
 ///
 /// # Errors
 /// [`Failure::Run`] if a solver fails or the start does not fit the mechanism; [`Failure::Output`] from `tell`.
@@ -73,18 +76,18 @@ pub fn run<M>(
     tell: impl FnMut(Event<'_>) -> io::Result<()>,
 ) -> Result<Summary, Failure>
 where
-    M: Partition<Scalar: Real> + Dynamics + CorrectedDynamics + 'static,
+    M: Partition<Scalar: Real> + Dynamics + CorrectedDynamics + Clone + 'static,
 {
     run_by(mechanism, &motion::Any, (settings, &Approach::default()), start, tell)
 }
 
 /// The same by any approach for which there is a builder.
 ///
-/// Under error control samples are interpolated, and inputs must not vary.
+/// Under error control samples are interpolated, and steps end where an input is not smooth.
 ///
 /// # Errors
 /// As [`run`]; [`Failure::Run`] also if the approach does not suit the mechanism.
-pub fn run_by<M: Partition<Scalar: Real> + 'static>(
+pub fn run_by<M: Partition<Scalar: Real> + Clone + 'static>(
     mechanism: &mut M,
     builder: &dyn MotionBuilder<M>,
     (settings, approach): (&Settings, &Approach),
@@ -105,7 +108,7 @@ pub fn run_by<M: Partition<Scalar: Real> + 'static>(
     set(mechanism, &start.inputs, 0.0);
     let mut told = Told { tell, last: Instant::now() };
     foretell(mechanism, builder, (&settings, approach), &y, &mut told)?;
-    let motion = begin(builder, mechanism, approach, (&y, &start.inputs))?;
+    let motion = begin(builder, mechanism, approach, (&y, start))?;
     let mut run = Run::new(mechanism, motion, y, start, approach);
     let outcome = run.follow(builder, (&settings, approach), &mut told);
     run.finish();
@@ -132,15 +135,19 @@ pub fn run_by<M: Partition<Scalar: Real> + 'static>(
 }
 
 /// A motion from a maximal state at time zero, with the inputs as they are then.
-pub(crate) fn begin<M: Partition<Scalar: Real>>(
+pub(crate) fn begin<M: Partition<Scalar: Real> + Clone>(
     builder: &dyn MotionBuilder<M>,
     mechanism: &M,
     approach: &Approach,
-    (y, inputs): (&M::State, &[Input]),
+    (y, start): (&M::State, &Start),
 ) -> Result<Box<dyn Motion<M>>, Failure> {
     let mut motion = builder.begin(mechanism, approach, y).map_err(Failure::Refused)?;
-    for input in inputs {
+    for input in &start.inputs {
         motion.set_input(input.index, input.at(0.0));
+    }
+    if approach.tolerance.is_some() {
+        let copy = any_varies(&start.inputs).then(|| mechanism.clone());
+        motion.follow(copy, Course::new(&start.inputs, &start.knots));
     }
     Ok(motion)
 }

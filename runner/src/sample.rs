@@ -1,9 +1,10 @@
 //! What is recorded at a sample time.
 
 use gyro_sim::{JointCoordinate, Mechanism, Real, Scalar, Turns, violation};
+use nanoserde::{DeBin, SerBin};
 
 /// The mechanism at one time, in `f64` whatever the run's precision.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, SerBin, DeBin)]
 pub struct Sample {
     /// Time, s.
     pub t: f64,
@@ -34,7 +35,7 @@ pub struct Sample {
 pub type JointSample = JointCoordinate<f64>;
 
 /// Pose and velocity of a body: `(r, p)` and `(s, w')`.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, SerBin, DeBin)]
 pub struct BodySample {
     /// Position of the mass centre, m, and Euler parameters.
     pub pose: [f64; 7],

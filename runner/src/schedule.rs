@@ -1,9 +1,10 @@
 //! When to step, to correct and to sample.
 
+use nanoserde::{DeBin, SerBin};
 use std::fmt;
 
 /// How a run is to be made; all times in seconds.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, SerBin, DeBin)]
 pub struct Settings {
     /// Length of the run. One of 0 has the start as its only sample.
     pub t_end: f64,

@@ -1,18 +1,37 @@
-//! A rotor of 1 kg·m² on an axle along x, turned by a torque: the smallest mechanism, for the tests of this crate.
+//! A rotor of 1 kg·m² on an axle along x, turned by a torque and braked by a viscous bearing: the smallest mechanism,
+//! and a linear one, for the tests of this crate.
 
 use crate::Start;
 use gyro_sim::{
     Buffers, Coordinate, CorrectedDynamics, Description, Dynamics, Energy, Error, JointInfo, Mechanism,
-    OutputInfo, Owner, Partition, RowInfo, charts,
+    OutputInfo, Owner, Partition, RowInfo, Scalar, charts,
 };
 
 /// State: r, p, s, w'.
-#[derive(Debug, Default)]
-pub(crate) struct Spinner {
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Spinner<T = f64> {
     /// At the start.
-    pub(crate) rate: f64,
+    pub(crate) rate: T,
     /// The only input.
-    pub(crate) torque: f64,
+    pub(crate) torque: T,
+    /// Of the bearing, N·m·s.
+    pub(crate) friction: T,
+}
+
+fn zero<T: Scalar>() -> T {
+    T::constant(0.0)
+}
+
+impl<T: Scalar> Spinner<T> {
+    fn moment(&self, y: &[T; 13]) -> T {
+        self.torque - self.friction * y[10]
+    }
+
+    /// The tangent ½ p∘(1, 0, 0).
+    fn tangent([_, _, _, e0, e1, e2, e3, ..]: &[T; 13]) -> [[T; 4]; 1] {
+        let [plus, minus] = [0.5, -0.5].map(T::constant);
+        [[minus * *e1, plus * *e0, plus * *e3, minus * *e2]]
+    }
 }
 
 impl Spinner {
@@ -24,24 +43,20 @@ impl Spinner {
             turn_references: vec![],
             angles: vec![0.0],
             inputs: vec![],
+            knots: vec![],
             observed_bodies: vec![0],
         }
     }
-
-    /// The tangent ½ p∘(1, 0, 0).
-    fn tangent([_, _, _, e0, e1, e2, e3, ..]: &[f64; 13]) -> [[f64; 4]; 1] {
-        [[-0.5 * e1, 0.5 * e0, 0.5 * e3, -0.5 * e2]]
-    }
 }
 
-impl Mechanism for Spinner {
-    type Scalar = f64;
-    type State = [f64; 13];
-    type Rows = [f64; 5];
-    type Constraints = [f64; 6];
-    type Velocities = [f64; 6];
-    type Readings = [f64; 3];
-    type Outputs = [f64; 1];
+impl<T: Scalar> Mechanism for Spinner<T> {
+    type Scalar = T;
+    type State = [T; 13];
+    type Rows = [T; 5];
+    type Constraints = [T; 6];
+    type Velocities = [T; 6];
+    type Readings = [T; 3];
+    type Outputs = [T; 1];
 
     fn description(&self) -> &Description<'_> {
         const ROWS: [RowInfo; 5] = {
@@ -65,41 +80,41 @@ impl Mechanism for Spinner {
     }
     fn buffers(&self) -> Buffers<Self> {
         Buffers {
-            rows: [0.0; 5],
-            constraints: [0.0; 6],
-            velocities: [0.0; 6],
-            readings: [0.0; 3],
-            outputs: [0.0],
+            rows: [zero(); 5],
+            constraints: [zero(); 6],
+            velocities: [zero(); 6],
+            readings: [zero(); 3],
+            outputs: [zero()],
         }
     }
 
-    fn start(&self) -> [f64; 13] {
-        let mut state = [0.0; 13];
-        (state[3], state[10]) = (1.0, self.rate);
+    fn start(&self) -> [T; 13] {
+        let mut state = [zero(); 13];
+        (state[3], state[10]) = (T::constant(1.0), self.rate);
         state
     }
 
-    fn phi(&self, _: f64, y: &[f64; 13], out: &mut [f64; 6]) {
-        let norm: f64 = y[3..7].iter().map(|e| e * e).sum();
-        *out = [y[0], y[1], y[2], y[5], y[6], norm - 1.0];
+    fn phi(&self, _: T, y: &[T; 13], out: &mut [T; 6]) {
+        let norm = y[3..7].iter().fold(T::constant(-1.0), |sum, e| sum + *e * *e);
+        *out = [y[0], y[1], y[2], y[5], y[6], norm];
     }
-    fn velocity_residual(&self, _: f64, y: &[f64; 13], out: &mut [f64; 5]) {
+    fn velocity_residual(&self, _: T, y: &[T; 13], out: &mut [T; 5]) {
         *out = [y[7], y[8], y[9], y[11], y[12]];
     }
-    fn applied_force(&self, _: f64, _: &[f64; 13], out: &mut [f64; 6]) {
-        *out = [0.0, 0.0, 0.0, self.torque, 0.0, 0.0];
+    fn applied_force(&self, _: T, y: &[T; 13], out: &mut [T; 6]) {
+        *out = [zero(), zero(), zero(), self.moment(y), zero(), zero()];
     }
-    fn energy(&self, _: f64, y: &[f64; 13]) -> Energy<f64> {
-        Energy { kinetic: 0.5 * y[10] * y[10], potential: 0.0 }
+    fn energy(&self, _: T, y: &[T; 13]) -> Energy<T> {
+        Energy { kinetic: T::constant(0.5) * y[10] * y[10], potential: zero() }
     }
-    fn read_joints(&self, _: f64, y: &[f64; 13], out: &mut [f64; 3]) {
-        *out = [2.0 * y[3] * y[4], y[3] * y[3] - y[4] * y[4], y[10]];
+    fn read_joints(&self, _: T, y: &[T; 13], out: &mut [T; 3]) {
+        *out = [T::constant(2.0) * y[3] * y[4], y[3] * y[3] - y[4] * y[4], y[10]];
     }
     /// The torque goes in and comes out.
-    fn outputs(&self, _: f64, _: &[f64; 13], out: &mut [f64; 1]) {
+    fn outputs(&self, _: T, _: &[T; 13], out: &mut [T; 1]) {
         *out = [self.torque];
     }
-    fn set_input(&mut self, index: usize, value: f64) -> bool {
+    fn set_input(&mut self, index: usize, value: T) -> bool {
         if index == 0 {
             self.torque = value;
         }
@@ -107,24 +122,24 @@ impl Mechanism for Spinner {
     }
 }
 
-impl Dynamics for Spinner {
-    type Accelerations = [f64; 6];
+impl<T: Scalar> Dynamics for Spinner<T> {
+    type Accelerations = [T; 6];
 
-    fn acceleration_buffer(&self) -> [f64; 6] {
-        [0.0; 6]
+    fn acceleration_buffer(&self) -> [T; 6] {
+        [zero(); 6]
     }
-    fn accelerations(&self, _: f64, _: &[f64; 13], out: &mut [f64; 6]) {
-        *out = [0.0, 0.0, 0.0, self.torque, 0.0, 0.0];
+    fn accelerations(&self, _: T, y: &[T; 13], out: &mut [T; 6]) {
+        *out = [zero(), zero(), zero(), self.moment(y), zero(), zero()];
     }
-    fn multipliers(&self, _: f64, _: &[f64; 13], _: &[f64; 6], lambda: &mut [f64; 5]) {
-        *lambda = [0.0; 5];
+    fn multipliers(&self, _: T, _: &[T; 13], _: &[T; 6], lambda: &mut [T; 5]) {
+        *lambda = [zero(); 5];
     }
-    fn derivative(&self, _: f64, y: &[f64; 13], dy: &mut [f64; 13]) {
-        *dy = [0.0; 13];
+    fn derivative(&self, _: T, y: &[T; 13], dy: &mut [T; 13]) {
+        *dy = [zero(); 13];
         for (rate, tangent) in dy[3..7].iter_mut().zip(Self::tangent(y)[0]) {
             *rate = tangent * y[10];
         }
-        dy[10] = self.torque;
+        dy[10] = self.moment(y);
     }
 }
 

@@ -2,9 +2,10 @@
 
 use crate::Sample;
 use gyro_sim::Statistics;
+use nanoserde::{DeBin, SerBin};
 
 /// The figures of a whole run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, SerBin, DeBin)]
 pub struct Summary {
     /// Steps of the integrator.
     pub steps: u64,

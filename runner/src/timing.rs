@@ -5,10 +5,11 @@ use crate::run::{begin, layout, scheduled, state};
 use crate::{Approach, Failure, Schedule, Settings, Start, describe_in};
 use gyro_sim::{Error, Partition, Real, Scalar, Statistics};
 use gyro_yardstick::{Measured, beside};
+use nanoserde::{DeBin, SerBin};
 use std::time::Duration;
 
 /// What a run costs: its steps and corrections alone, no samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, SerBin, DeBin)]
 pub struct Timing {
     /// Its time.
     pub measured: Measured,
@@ -20,7 +21,7 @@ pub struct Timing {
 ///
 /// # Errors
 /// [`Failure::Run`] as of [`run_by`](crate::run_by).
-pub fn time_by<M: Partition<Scalar: Real> + 'static>(
+pub fn time_by<M: Partition<Scalar: Real> + Clone + 'static>(
     mechanism: &M,
     builder: &dyn MotionBuilder<M>,
     (settings, approach): (&Settings, &Approach),
@@ -32,7 +33,7 @@ pub fn time_by<M: Partition<Scalar: Real> + 'static>(
     let segments: Vec<_> = Schedule::new(&settings).collect();
     let mut statistics = Statistics::default();
     let once = || -> Result<(), Failure> {
-        let mut motion = begin(builder, mechanism, approach, (&y, &start.inputs))?;
+        let mut motion = begin(builder, mechanism, approach, (&y, start))?;
         let layout = layout(mechanism, builder, approach);
         let in_words = |error: Error| Failure::run(describe_in(mechanism, layout, &error));
         if approach.tolerance.is_some() {

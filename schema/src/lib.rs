@@ -38,7 +38,7 @@ struct Model {
     /// Numbers that stay tunable, with their defaults, or expressions of other parameters.
     parameters: Option<BTreeMap<String, Number>>,
     /// Numbers that the caller sets at every step, with their values until then.
-    inputs: Option<BTreeMap<String, Plain>>,
+    inputs: Option<BTreeMap<String, Input>>,
     #[schemars(length(min = 1))]
     body: Vec<Body>,
     joint: Option<Vec<Joint>>,
@@ -46,6 +46,37 @@ struct Model {
     driver: Option<Vec<Driver>>,
     force: Option<Vec<Force>>,
     output: Option<Vec<Output>>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[expect(dead_code, reason = "a description")]
+enum Input {
+    Value(Plain),
+    Described(DescribedInput),
+}
+
+/// An input with more than its value.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[expect(dead_code, reason = "a description")]
+struct DescribedInput {
+    /// The value until the caller sets another.
+    value: Plain,
+    /// What the input is between the rows of a table; `linear` unless given.
+    between: Option<Between>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "snake_case")]
+#[expect(dead_code, reason = "a description")]
+enum Between {
+    /// Straight lines.
+    Linear,
+    /// The value of the row before.
+    Held,
+    /// The natural cubic spline through the rows.
+    Smooth,
 }
 
 /// How a run is made unless told otherwise.

@@ -13,16 +13,18 @@
 //! let times = vec![0.0, 0.5, 1.0];
 //! let poses = vec![times.iter().map(|&t| pose(t)).collect()];
 //! let run = Run { times, poses, ..Run::default() };
-//! let html = page("a ball falls", &[Scene { name: "run".to_owned(), mechanism, run }]);
+//! let html = page("a ball falls", &[Scene { name: "run".to_owned(), mechanism, run }], None);
 //! assert!(html.starts_with(gyro_show::MARK));
 //! ```
 #![deny(missing_docs)]
 
 mod channel;
+mod live;
 mod mechanism;
 mod page;
 mod run;
 
+pub use live::{Live, Setting, Slope};
 pub use mechanism::{Body, Joint, JointEnd, Link, Load, Mechanism, Shape, Support};
 pub use page::{MARK, page};
 pub use run::{Column, Reaction, Run, Scale, Scene};

@@ -1,7 +1,7 @@
 //! The page's text.
 
 use crate::channel::{Channel, Rounding, pack};
-use crate::{Column, Mechanism, Reaction, Run, Scale, Scene};
+use crate::{Column, Live, Mechanism, Reaction, Run, Scale, Scene};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
@@ -30,16 +30,18 @@ const PLOTTED: Rounding = Rounding::Bits(20);
 /// Times of samples: evenly spaced ones take no room, however finely.
 const TIME: Rounding = Rounding::Bits(30);
 
-/// The text of a page that shows these runs over one another; the first is the one that leads.
-pub fn page(title: &str, scenes: &[Scene]) -> String {
+/// The text of a page that shows these runs over one another; the first is the one that leads, and the one that is
+/// computed in the page if the mechanism comes with it.
+pub fn page(title: &str, scenes: &[Scene], live: Option<&Live>) -> String {
     let mut bytes = Vec::new();
     let scenes = scenes.iter().map(|scene| head(scene, &mut bytes)).collect();
-    let head = Head { title, scenes };
+    let head = Head { title, scenes, live };
     let json = serde_json::to_string(&head).expect("plain data has no keys but strings");
     SHELL
         .replace("{{mark}}", MARK)
         .replace("{{title}}", &escape(title))
         .replace("{{viewer}}", &STANDARD.encode(VIEWER))
+        .replace("{{module}}", &live.map_or_else(String::new, |live| STANDARD.encode(deflate(&live.module))))
         .replace("{{numbers}}", &STANDARD.encode(deflate(&bytes)))
         // Last, as names may be anything; no script ends within a string.
         .replace("{{head}}", &json.replace('<', "\\u003c"))
@@ -50,6 +52,8 @@ pub fn page(title: &str, scenes: &[Scene]) -> String {
 struct Head<'a> {
     title: &'a str,
     scenes: Vec<SceneHead<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    live: Option<&'a Live>,
 }
 
 #[derive(Serialize)]
@@ -127,7 +131,7 @@ mod tests {
         let mechanism = Mechanism { bodies: vec![body], ..Mechanism::default() };
         let still = vec![[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]];
         let run = Run { times: vec![0.0, 1.0], poses: vec![still], ..Run::default() };
-        let html = page("<b>&", &[Scene { name: "run".to_owned(), mechanism, run }]);
+        let html = page("<b>&", &[Scene { name: "run".to_owned(), mechanism, run }], None);
         assert!(html.starts_with(MARK) && html.contains("<title>&lt;b>&amp;</title>"));
         assert!(!html.contains("alert(1)//{{numbers}}\"") || html.contains("\\u003c/script>"));
         assert!(!html.contains("</script><script>alert"), "a name has ended the script");

@@ -12,6 +12,8 @@ const { outputFiles } = await build({
   format: 'iife',
   target: 'es2022',
   legalComments: 'inline',
+  // The run time of exported modules reads files in Node; a page has its module in it.
+  external: ['node:*'],
   loader: { '.css': 'text' },
   write: false,
 });

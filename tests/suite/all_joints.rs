@@ -3,7 +3,7 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_model::{Model, to_f64};
-use gyro_runner::{Input, JointSample, Sample, Settings};
+use gyro_runner::{Between, Input, JointSample, Sample, Settings};
 use gyro_sim_suite::generated::all_joints::{AllJoints, Parameters};
 use gyro_sim_suite::{Engine, Run, dense, fed, generated, model, simulate, worst};
 
@@ -22,7 +22,7 @@ const BALANCE: f64 = 1e-8;
 
 fn run(mechanism: &Engine, model: &Model) -> Run {
     let rows = vec![[0.0, 0.02], [0.1, 0.3], [0.2, -0.1]];
-    let (samples, outcome) = fed(mechanism, model, &SETTINGS, vec![Input { index: 0, rows }]);
+    let (samples, outcome) = fed(mechanism, model, &SETTINGS, vec![Input::new(0, rows, Between::Linear)]);
     Run { samples, summary: outcome.unwrap_or_else(|failure| panic!("{failure}")) }
 }
 

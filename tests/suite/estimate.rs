@@ -74,7 +74,7 @@ pub fn estimate(
     approach: &Approach,
     mut run: impl FnMut(&Settings, &Approach) -> Option<Vec<Sample>>,
 ) -> Option<Vec<Difference>> {
-    let companions = companions(settings, approach, false);
+    let companions = companions(settings, approach);
     let other = companions.iter().find_map(|(settings, approach)| run(settings, approach))?;
     Some(differences(samples, &other))
 }

@@ -1,7 +1,7 @@
 //! Forces, inputs and drivers, each against an integration of its own or a closed form.
 
 use gyro_reference::{AxisForce, AxisSample, OneAxis, SampledInput, Side, Tether};
-use gyro_runner::{Input, JointSample, Settings};
+use gyro_runner::{Between, Input, JointSample, Settings};
 use gyro_sim_suite::{
     Run, as_paged, check, coordinate, fed, generated, model, output, pair, played, simulate, times,
 };
@@ -109,7 +109,7 @@ fn a_motor_that_is_fed_from_a_table() {
     let rows = vec![[0.1, 0.0], [0.3, 0.5], [0.55, -0.8], [0.8, 0.2]];
     let (mechanism, model) = (generated("motor"), model("motor"));
     let settings = as_paged(&model, 0.05);
-    let input = Input { index: 0, rows: rows.clone() };
+    let input = Input::new(0, rows.clone(), Between::Linear);
     let (samples, outcome) = fed(&mechanism, &model, &settings, vec![input]);
     let run = Run { samples, summary: outcome.unwrap_or_else(|failure| panic!("{failure}")) };
     let disc = OneAxis { inertia: 0.02, forces: vec![AxisForce::Damper(0.03)], start: 0.0, rate: -2.0 };

@@ -55,8 +55,7 @@ where
         // Assembled at its start, closed by a driver only then.
         let t = if layout.closure_rows.is_empty() { random.signed() } else { 0.0 };
         CloseLoops::new(&mechanism).correct(&mechanism, t, &mut x).unwrap();
-        let inputs: Vec<Input> =
-            (0..n_inputs).map(|index| Input { index, rows: vec![[0.0, random.signed()]] }).collect();
+        let inputs: Vec<Input> = (0..n_inputs).map(|index| Input::constant(index, random.signed())).collect();
         for input in &inputs {
             mechanism.set_input(input.index, input.at(t));
         }

@@ -79,6 +79,9 @@ impl Scalar for Lanes {
         let lanes = self.0.map(|t| t.spline(knots, pieces));
         [0, 1, 2].map(|order| Self(lanes.map(|lane| lane[order])))
     }
+    fn spline_third(self, knots: &[f64], pieces: &[[f64; 4]]) -> Self {
+        Self(self.0.map(|t| t.spline_third(knots, pieces)))
+    }
 }
 
 fn dual(value: f64, slope: f64) -> Dual {
@@ -152,6 +155,9 @@ impl Scalar for Dual {
             dual(first, second * self.slope),
             dual(second, third * 1e6 * self.slope),
         ]
+    }
+    fn spline_third(self, knots: &[f64], pieces: &[[f64; 4]]) -> Self {
+        dual(self.value.spline_third(knots, pieces), 0.0)
     }
 }
 

@@ -125,7 +125,7 @@ impl Stand {
     fn judge(&mut self, case: &Case, samples: &[Sample], summary: &Summary) -> Option<Judgement> {
         let measure = Measure { tolerance: case.approach.tolerance, size: self.size, is_balanced: true };
         let mut doubtful = None;
-        for (settings, approach) in companions(&case.settings, &case.approach, false) {
+        for (settings, approach) in companions(&case.settings, &case.approach) {
             let key = format!("{} {} {} {approach:?}", settings.t_end, settings.sample_every, settings.step);
             if !self.companions.contains_key(&key) {
                 let double = Case { is_single: false, settings, approach, ..*case };

@@ -54,6 +54,7 @@ pub fn start_of(model: &Model) -> Start {
         angles: angles.collect(),
         turn_references: turns.map(|turn| start.joints[turn.joint].position[turn.coordinate]).collect(),
         inputs: Vec::new(),
+        knots: Vec::new(),
         observed_bodies: (0..model.coordinate_bodies().len()).collect(),
         positions: start.q,
         velocities: start.v,
@@ -117,7 +118,7 @@ pub fn judged(
     let (tolerance, size) = (approach.tolerance, mechanism.size());
     let measure = Measure { tolerance, size, is_balanced: true };
     let mut doubtful = None;
-    for (settings, approach) in companions(settings, approach, false) {
+    for (settings, approach) in companions(settings, approach) {
         let (others, outcome) = moved(mechanism, builder, (&settings, &approach), start);
         let Ok(other) = outcome else { continue };
         let judgement = judge((samples, summary), (&others, &other), &measure);

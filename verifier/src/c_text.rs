@@ -10,7 +10,8 @@ mod statements;
 mod tokens;
 
 use crate::module::Module;
-use crate::program::{Id, Node, Program};
+use crate::nodes::Nodes;
+use crate::program::{Id, Program};
 use crate::refusal::Refusal;
 use gyro_model::Model;
 use statements::Reader;
@@ -109,52 +110,4 @@ fn definition(tokens: &[Token], name: &str) -> Option<usize> {
 fn named_numbers(tokens: &[Token]) -> HashMap<String, usize> {
     let triples = tokens.windows(3).filter(|triple| triple[1].text == "=");
     triples.filter_map(|triple| Some((triple[0].text.clone(), triple[2].text.parse().ok()?))).collect()
-}
-
-/// Operations, each once: what is computed alike has the same place.
-#[derive(Debug, Default)]
-struct Nodes {
-    nodes: Vec<Node>,
-    places: HashMap<Node, Id>,
-    /// Bits of literals, which [`Node::Constant`] names by their places.
-    literals: Vec<u64>,
-}
-
-impl Nodes {
-    fn push(&mut self, node: Node) -> Id {
-        // A sign before a literal is the literal's.
-        if let Node::Neg(of) = node
-            && let Node::Constant(place) = self.nodes[of]
-        {
-            return self.literal(-f64::from_bits(self.literals[place]));
-        }
-        let next = self.nodes.len();
-        let place = *self.places.entry(node).or_insert(next);
-        if place == next {
-            self.nodes.push(node);
-        }
-        place
-    }
-
-    fn literal(&mut self, value: f64) -> Id {
-        let bits = value.to_bits();
-        let place = self.literals.iter().position(|known| *known == bits).unwrap_or(self.literals.len());
-        if place == self.literals.len() {
-            self.literals.push(bits);
-        }
-        self.push(Node::Constant(place))
-    }
-
-    /// The results of a module's function.
-    fn of_program(&mut self, program: &Program, module: &Module) -> Vec<Id> {
-        let mut places: Vec<Id> = Vec::with_capacity(program.nodes.len());
-        for node in &program.nodes {
-            let place = match *node {
-                Node::Constant(place) => self.literal(module.constants.rounded(place)),
-                node => self.push(node.with_operands(|id| places[id])),
-            };
-            places.push(place);
-        }
-        program.results.iter().map(|&id| places[id]).collect()
-    }
 }

@@ -42,6 +42,7 @@
 
 pub mod atoms;
 mod c_text;
+mod clif;
 pub mod constants;
 mod data_sheet;
 pub mod divisors;
@@ -50,6 +51,7 @@ mod finite;
 pub mod interpreter;
 pub mod joints;
 pub mod module;
+mod nodes;
 mod numeric;
 pub mod point;
 pub mod program;
@@ -67,6 +69,7 @@ pub mod textbook;
 mod verify;
 
 pub use c_text::same_in_c;
+pub use clif::{Clif, Written, same_in_clif};
 pub use finite::problems as not_finite;
 pub use prove::{NotProved, prove, prove_with};
 pub use report::{ACCEPTED_LOG10, Finding, Report};

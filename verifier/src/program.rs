@@ -92,6 +92,8 @@ pub struct Program {
     pub places: Vec<usize>,
     /// Names that nothing refers to, with their lines.
     pub unused: Vec<(String, usize)>,
+    /// First and last line of each loop.
+    pub loops: Vec<(usize, usize)>,
 }
 
 impl Node {

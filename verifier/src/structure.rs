@@ -49,7 +49,11 @@ enum Made {
     Atan2(Signed, Signed),
 }
 
-/// Lines of operations whose value, up to its sign, an earlier one has, with the earlier one's line.
+/// So many operations for each that a loop may do again: what parts share by chance they compute apart.
+const OPERATIONS_A_COPY: usize = 50;
+
+/// Lines of operations whose value, up to its sign, an earlier one has, with the earlier one's line; not the few of
+/// loops.
 fn repetitions(program: &Program) -> Vec<(usize, usize)> {
     let (mut known, mut repeated) = (HashMap::<Made, (usize, usize)>::new(), Vec::new());
     let mut values: Vec<Signed> = Vec::new();
@@ -76,6 +80,12 @@ fn repetitions(program: &Program) -> Vec<(usize, usize)> {
             repeated.push((line, first));
         }
         values.push((class, negated));
+    }
+    let in_loop = |line: usize| program.loops.iter().any(|&(from, to)| (from..=to).contains(&line));
+    let of_loops = |&&(line, first): &&(usize, usize)| in_loop(line) || in_loop(first);
+    let n_operations = program.nodes.iter().filter(|node| node.operands().next().is_some()).count();
+    if OPERATIONS_A_COPY * repeated.iter().filter(of_loops).count() <= n_operations {
+        repeated.retain(|pair| !of_loops(&pair));
     }
     repeated
 }
@@ -105,5 +115,21 @@ mod tests {
         program.push(Node::Div(a, b), 8);
         program.push(Node::Div(b, a), 9);
         assert_eq!(repetitions(&program), [(4, 2), (7, 6)]);
+    }
+
+    #[test]
+    fn loops_may_do_a_few_operations_again() {
+        let mut program = Program { loops: vec![(2, 3)], ..Program::default() };
+        let x = program.push(Node::Read(Source::State(0)), 1);
+        let mut sum = x;
+        for _ in 0..OPERATIONS_A_COPY {
+            sum = program.push(Node::Add(sum, x), 2);
+        }
+        program.push(Node::Add(x, x), 3);
+        assert_eq!(repetitions(&program), []);
+        program.push(Node::Add(x, x), 4);
+        assert_eq!(repetitions(&program), [(3, 2), (4, 2)]);
+        program.loops.clear();
+        assert_eq!(repetitions(&program), [(3, 2), (4, 2)]);
     }
 }

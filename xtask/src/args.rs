@@ -1,13 +1,15 @@
 //! The arguments: all commands of `gyro`, and those of developers.
 
 use clap::{Args, Parser, Subcommand};
-use gyro_cli::EXIT_CODES;
+use gyro_cli::{Common, EXIT_CODES, VERSION};
 use std::path::PathBuf;
 
 /// From a model file of bodies and joints to Rust code and to plots.
 #[derive(Debug, Parser)]
-#[command(name = "cargo xtask", bin_name = "cargo xtask", after_help = EXIT_CODES)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", version = VERSION, after_help = EXIT_CODES)]
 pub(crate) struct Cli {
+    #[command(flatten)]
+    pub(crate) common: Common,
     #[command(subcommand)]
     pub(crate) command: Command,
 }
@@ -18,6 +20,25 @@ pub(crate) enum Command {
     Gyro(Box<gyro_cli::Command>),
     Performance(PerformanceArgs),
     Embedded(EmbeddedArgs),
+    Release(ReleaseArgs),
+}
+
+/// Check that all crates can be published
+///
+/// The tree has no changes, the changelog has the version, each manifest says what its crate is, all crates pass
+/// `cargo publish --dry-run` together, and the library of the run time is small. Publishes nothing, and says how that
+/// is done.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  cargo xtask release
+  cargo xtask release --allow-dirty --no-build    while working on a manifest")]
+pub(crate) struct ReleaseArgs {
+    /// Check manifests and packages only: the tree may have changes, and the changelog no version
+    #[arg(long)]
+    pub(crate) allow_dirty: bool,
+    /// Pack the crates, but do not build what was packed
+    #[arg(long)]
+    pub(crate) no_build: bool,
 }
 
 /// Measure generated code and write the tables of docs/performance.md

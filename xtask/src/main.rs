@@ -4,6 +4,7 @@ mod args;
 mod embedded;
 mod lanes;
 mod performance;
+mod release;
 mod scaling;
 
 use args::{Cli, Command};
@@ -11,10 +12,13 @@ use gyro_cli::parse;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let outcome = match parse::<Cli>().command {
+    let cli = parse::<Cli>();
+    cli.common.apply();
+    let outcome = match cli.command {
         Command::Gyro(command) => command.run(),
         Command::Performance(args) => performance::performance(&args),
         Command::Embedded(args) => embedded::embedded(&args),
+        Command::Release(args) => release::release(&args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

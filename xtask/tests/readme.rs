@@ -35,7 +35,7 @@ fn pages() -> Vec<(PathBuf, String)> {
 
 /// All commands of a page: lines after a dollar, and what begins with `cargo` between backquotes.
 fn commands(page: &str) -> Vec<Vec<String>> {
-    let blocks = blocks(page, "console").concat();
+    let blocks = blocks(page, "console").concat().replace("\\\n", "");
     let typed = blocks.lines().filter_map(|line| line.strip_prefix("$ "));
     let without = blocks_removed(page);
     let inline = without.split('`').skip(1).step_by(2).filter(|words| words.starts_with("cargo "));
@@ -73,13 +73,14 @@ impl Drop for Folder {
     }
 }
 
-/// Files that a command reads are there.
+/// Files that a command reads are there, but those that it makes itself (`gyro new NAME && ...`).
 fn files_are_there(page: &str, command: &[String]) {
     let writes = command.iter().position(|word| word == "--out").map(|at| at + 1);
     for (index, word) in command.iter().enumerate().skip(1) {
-        let path = word.rsplit('=').next().unwrap();
+        let path = word.rsplit(['=', ':']).next().unwrap();
         let is_file = [".toml", ".csv", ".urdf"].iter().any(|end| path.ends_with(end));
-        if is_file && writes != Some(index) {
+        let is_new = command.windows(2).any(|pair| pair[0] == "new" && path == format!("{}.toml", pair[1]));
+        if is_file && writes != Some(index) && !is_new {
             assert!(root().join(path).exists(), "{page}: `{}`: there is no {path}", command.join(" "));
         }
     }

@@ -1,15 +1,16 @@
 //! One run beside the yardstick, in turns: whatever slows the machine down for a while slows both down alike.
 
 use crate::Floor;
+use nanoserde::{DeBin, SerBin};
 use std::hint::black_box;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How long a run takes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, SerBin, DeBin)]
 pub struct Measured {
     /// How often it was made.
     pub runs: u64,
-    /// Median time of the processor, s.
+    /// Median time, s.
     pub seconds: f64,
     /// Median over the turns of that time over the yardstick's in the same turn.
     pub ratio: f64,
@@ -61,25 +62,12 @@ pub fn beside<E>(budget: Duration, mut run: impl FnMut() -> Result<(), E>) -> Re
     }
 }
 
-/// What the processor has spent on this, s.
+/// How long this takes by the clock, s. A slice is shorter than what a system lets a program run without a break: on a
+/// busy machine most slices are whole, and the median is one of these.
 fn timed(action: impl FnOnce()) -> f64 {
-    let began = processor_time();
+    let began = Instant::now();
     action();
-    (processor_time() - began).as_secs_f64()
-}
-
-/// What the processor has spent on this thread.
-#[cfg(unix)]
-pub fn processor_time() -> Duration {
-    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-    Duration::new(u64::try_from(time.tv_sec).unwrap_or(0), u32::try_from(time.tv_nsec).unwrap_or(0))
-}
-
-/// Since this was first asked: where there is no such clock, that on the wall has to do.
-#[cfg(not(unix))]
-pub fn processor_time() -> Duration {
-    static BEGAN: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
-    BEGAN.get_or_init(std::time::Instant::now).elapsed()
+    began.elapsed().as_secs_f64()
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

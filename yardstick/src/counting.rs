@@ -130,6 +130,9 @@ impl Scalar for Counted {
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
         self.0.spline(knots, pieces).map(Self)
     }
+    fn spline_third(self, knots: &[f64], pieces: &[[f64; 4]]) -> Self {
+        Self(self.0.spline_third(knots, pieces))
+    }
 }
 
 impl Number for Counted {

@@ -13,9 +13,13 @@ mod four_bar;
 mod slider_crank;
 mod stewart;
 
-pub use beside::{Measured, beside, processor_time};
+pub use beside::{Measured, beside};
 pub use counting::{Counted, Number, Operations, operations};
 pub use floor::{FLOPS, Floor, START, STEP};
 pub use four_bar::FourBar;
 pub use slider_crank::SliderCrank;
 pub use stewart::Stewart;
+
+/// Where this crate's manifest was when it was compiled: the command line packs its sources.
+#[doc(hidden)]
+pub const MANIFEST_FOLDER: &str = env!("CARGO_MANIFEST_DIR");

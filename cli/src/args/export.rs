@@ -8,6 +8,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   {program} export c models/four-bar.toml --out out/four-bar
+  {program} export wasm models/four-bar.toml --out out/four-bar
   {program} export fmu models/four-bar.toml --out out/four-bar.fmu")]
 pub struct ExportArgs {
     #[command(subcommand)]
@@ -18,6 +19,7 @@ pub struct ExportArgs {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Target {
     C(CArgs),
+    Wasm(WasmArgs),
     Fmu(FmuArgs),
 }
 
@@ -47,6 +49,34 @@ pub struct CArgs {
     /// Also compile it, with the C compiler `cc` or that of the variable CC, into a static library libNAME.a
     #[arg(long)]
     pub(crate) library: bool,
+    /// Refuse models with redundant constraint rows instead of dropping the rows with a warning
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
+/// Write a WebAssembly module with an ES module around it and its declarations for TypeScript
+///
+/// All functions of the module, and a solver with error control, for browsers and Node; it imports nothing and computes
+/// the bits of the generated Rust. It is the C of `export c`, compiled by clang: by what the variable CLANG names, or
+/// `clang`, or that which embedded/setup.sh unpacks into the clone. The module is proved before it is written. See
+/// docs/export.md.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  {program} export wasm models/four-bar.toml --out out/four-bar
+  {program} export wasm ~/arm.toml --out web/arm --functions all")]
+pub struct WasmArgs {
+    /// Model file, anywhere on disk
+    #[arg(value_name = "MODEL")]
+    pub(crate) model: PathBuf,
+    /// Folder for NAME.wasm, NAME.mjs and NAME.d.mts; it is made if need be
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Number type
+    #[arg(long, value_enum, default_value = "f64")]
+    pub(crate) precision: Precision,
+    /// Functions, by their names or by groups, separated by commas [default: the model file's, or what solvers call]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', long_help = super::functions_help())]
+    pub(crate) functions: Option<Vec<String>>,
     /// Refuse models with redundant constraint rows instead of dropping the rows with a warning
     #[arg(long)]
     pub(crate) strict: bool,

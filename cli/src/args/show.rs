@@ -3,6 +3,7 @@
 use super::{Engine, SimulateArgs};
 use clap::{Args, ValueEnum};
 use gyro_model::{Rational, parse_decimal};
+use std::path::{Path, PathBuf};
 
 /// Show a model moving, in a browser
 ///
@@ -21,18 +22,26 @@ use gyro_model::{Rational, parse_decimal};
   {program} show models/gyroscope.toml
   {program} show models/slider-crank.toml --t-end 3 --out crank.html --open
   {program} show my-gimbal.toml --compare rotor_mass=0.1
-  {program} show models/four-bar.toml --compare generated --reactions"
+  {program} show models/four-bar.toml --compare generated --reactions
+  {program} show models/gyroscope.toml --compare models/gyroscope-heavy-rotor.toml
+  {program} show examples/pendulum.toml --live --open"
 )]
 pub struct ShowArgs {
     #[command(flatten)]
     pub(crate) simulate: SimulateArgs,
-    /// Show a second run over the first, and what it has otherwise: PARAMETER=VALUE, or an engine; several are
-    /// separated by commas
+    /// Show a second run over the first, and what it has otherwise: PARAMETER=VALUE, an engine, or another model file;
+    /// several are separated by commas
     #[arg(long, value_name = "CHANGES", value_parser = change, value_delimiter = ',')]
     pub(crate) compare: Vec<Change>,
     /// Compute the reactions of all joints, to be shown as arrows and plots
     #[arg(long)]
     pub(crate) reactions: bool,
+    /// Put the mechanism into the page, as WebAssembly, with sliders for parameters and inputs
+    ///
+    /// The run is computed anew there, from the time that is shown on, when one is moved. It needs a compiler, as
+    /// `export wasm` does, and a mechanism that has joint coordinates.
+    #[arg(long)]
+    pub(crate) live: bool,
     /// Open the page in the browser
     #[arg(long)]
     pub(crate) open: bool,
@@ -45,12 +54,17 @@ pub(crate) enum Change {
     Engine(Engine),
     /// Another value of a parameter.
     Set(String, Rational),
+    /// Another model file, of which parameters and inputs are as it has them.
+    Model(PathBuf),
 }
 
 fn change(text: &str) -> Result<Change, String> {
+    if Path::new(text.trim()).extension().is_some_and(|extension| extension == "toml") {
+        return Ok(Change::Model(text.trim().into()));
+    }
     let Some((name, value)) = text.split_once('=') else {
         return Engine::from_str(text.trim(), false).map(Change::Engine).map_err(|_| {
-            "PARAMETER=VALUE or an engine was expected, such as rotor_mass=0.08 or generated".to_owned()
+            "PARAMETER=VALUE, an engine or a model file was expected, such as rotor_mass=0.08, generated or other.toml".to_owned()
         });
     };
     let exact = parse_decimal(value)

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use gyro_model::{Method, Rational, parse_decimal};
-use gyro_runner::{Coordinates, Correction, Integrator, When};
+use gyro_runner::{Between, Coordinates, Correction, Integrator, When};
 use std::path::PathBuf;
 
 /// Simulate a model
@@ -30,6 +30,13 @@ pub struct SimulateArgs {
     /// Engine that computes the motion [default: generated]
     #[arg(long, value_enum)]
     pub(crate) engine: Option<Engine>,
+    /// How long generated code is searched for short forms
+    #[arg(long, value_enum, default_value_t = Effort::Full)]
+    pub(crate) effort: Effort,
+    /// Prove the functions of --engine jit before the run, as those of --engine generated always are
+    #[cfg(feature = "jit")]
+    #[arg(long)]
+    pub(crate) prove: bool,
     /// Length of the run
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) t_end: Option<f64>,
@@ -81,9 +88,11 @@ pub struct SimulateArgs {
     #[arg(long, value_name = "PARAMETER=VALUE", value_parser = setting)]
     pub(crate) set: Vec<(String, Rational)>,
     /// Value of one of the model's inputs, once for each input: a number, or a CSV file with two columns, time and
-    /// value. Values are interpolated linearly between rows and held before the first and after the last; each step
-    /// uses the value at its start. Inputs that are not set keep the model file's value
-    #[arg(long, value_name = "NAME=FILE.csv|NUMBER", value_parser = set_input)]
+    /// value. Between rows the input is held, linear or smooth (a natural cubic spline): as said before the file's
+    /// name, or in the model file, else linear; before the first and after the last row it is held. A step of fixed
+    /// length uses the value at its start; under error control steps end where the input is not smooth. Inputs that
+    /// are not set keep the model file's value
+    #[arg(long, value_name = "NAME=[held:|linear:|smooth:]FILE.csv|NUMBER", value_parser = set_input)]
     pub(crate) input: Vec<(String, InputSetting)>,
     /// Refuse a model with redundant constraint rows instead of dropping the rows with a warning
     #[arg(long)]
@@ -101,6 +110,9 @@ pub struct SimulateArgs {
 pub(crate) enum Engine {
     /// Generated code, compiled on demand
     Generated,
+    /// Generated code, compiled in this process: the same results to the last bit, without rustc; starts within seconds
+    #[cfg(feature = "jit")]
+    Jit,
     /// The runtime-assembled model, in its careful form where the mechanism allows it (trees of revolute, spherical and
     /// fixed joints); starts immediately
     Assembled,
@@ -109,6 +121,14 @@ pub(crate) enum Engine {
     /// The runtime-assembled model as a recursion in joint coordinates: for trees of any joints; the fastest engine
     /// that needs no compilation
     Recursive,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Effort {
+    /// Few forms of each function: generated sooner, seldom much slower
+    Quick,
+    /// All forms
+    Full,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -131,10 +151,17 @@ impl SimulateArgs {
 }
 
 impl Engine {
+    /// Whether it computes what the generator derives.
+    pub(crate) fn is_generated(self) -> bool {
+        !matches!(self, Self::Assembled | Self::Dense | Self::Recursive)
+    }
+
     /// Its name on the command line.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Generated => "generated",
+            #[cfg(feature = "jit")]
+            Self::Jit => "jit",
             Self::Assembled => "assembled",
             Self::Dense => "dense",
             Self::Recursive => "recursive",
@@ -148,6 +175,15 @@ impl Precision {
         match self {
             Self::F32 => "f32",
             Self::F64 => "f64",
+        }
+    }
+}
+
+impl From<Effort> for gyro_codegen::Effort {
+    fn from(effort: Effort) -> Self {
+        match effort {
+            Effort::Quick => Self::Quick,
+            Effort::Full => Self::Full,
         }
     }
 }
@@ -166,8 +202,11 @@ impl From<MethodName> for Method {
 pub(crate) enum InputSetting {
     /// A constant value.
     Number(f64),
-    /// A CSV file of times and values.
-    File(PathBuf),
+    /// A CSV file of times and values, and what is between them if that is said.
+    File(PathBuf, Option<Between>),
+    /// Times and values, from a program that is not a command line.
+    #[cfg_attr(not(feature = "jit"), expect(dead_code, reason = "only programs give them"))]
+    Rows(Vec<[f64; 2]>),
 }
 
 fn set_input(text: &str) -> Result<(String, InputSetting), String> {
@@ -179,8 +218,21 @@ fn set_input(text: &str) -> Result<(String, InputSetting), String> {
         Ok(number) if number.is_finite() => Ok((name, InputSetting::Number(number))),
         Ok(_) => Err(format!("`{value}` is not a finite number")),
         Err(_) if value.is_empty() => Err(format!("a value is missing after `{name}=`")),
-        Err(_) => Ok((name, InputSetting::File(PathBuf::from(value)))),
+        Err(_) => {
+            let (file, between) = file(value);
+            Ok((name, InputSetting::File(file, between)))
+        }
     }
+}
+
+/// A file's name, perhaps with a word and a colon before it.
+fn file(text: &str) -> (PathBuf, Option<Between>) {
+    let known = [("held", Between::Held), ("linear", Between::Linear), ("smooth", Between::Smooth)];
+    let found = text.split_once(':').and_then(|(word, file)| {
+        let (_, between) = known.iter().find(|(known, _)| *known == word.trim())?;
+        Some((PathBuf::from(file.trim()), Some(*between)))
+    });
+    found.unwrap_or_else(|| (PathBuf::from(text), None))
 }
 
 fn integrator(text: &str) -> Result<Integrator, String> {

@@ -213,15 +213,17 @@ impl Lab {
 
     fn open(&self, (engine, precision): (Engine, Precision)) -> Result<Session, Failure> {
         let form = match engine {
-            Engine::Generated => {
+            engine if engine.is_generated() => {
                 let program = usize::from(precision == Precision::F32);
                 return Session::open(&self.programs[program], &[]);
             }
             Engine::Recursive => "recursive",
             Engine::Assembled => "careful",
-            Engine::Dense => "dense",
+            _ => "dense",
         };
-        Session::open(&self.assembled, &[&self.path.to_string_lossy(), form, precision.name()])
+        let model = self.path.to_string_lossy();
+        let arguments = ["answer", &model, form, precision.name()];
+        Session::open(&self.assembled, &arguments)
     }
 
     /// A point of a curve.

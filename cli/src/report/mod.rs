@@ -28,6 +28,7 @@ mod write;
 
 use crate::args::ReportArgs;
 use crate::failure::Failure;
+use crate::places::no_model_file;
 use crate::progress::Count;
 use crate::write::unwritable;
 use crate::{files, nested, scene};
@@ -42,7 +43,7 @@ pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
     // A mistake in the last of them is better known before anything is compiled.
     let names =
         pages.iter().map(|path| Ok(scene::read(path)?.name)).collect::<Result<Vec<String>, Failure>>()?;
-    let root = files::root();
+    let root = files::workspace().unwrap_or(Path::new(""));
     // A quick look does not replace what was measured with care.
     let own = root.join(if args.quick { "target" } else { "out" }).join("report");
     let folder = args.out.clone().unwrap_or(own);
@@ -87,11 +88,13 @@ fn judge(missed: &[Goal], is_quick: bool) -> Result<(), Failure> {
 
 /// The model files to report on: those given; of all shipped ones; in quick mode the paper's scene.
 fn pages(args: &ReportArgs) -> Result<Vec<PathBuf>, Failure> {
-    let models = files::root().join("models");
-    match (args.models.is_empty(), args.quick) {
-        (false, _) => Ok(args.models.clone()),
-        (true, true) => Ok(vec![models.join("gyroscope.toml")]),
-        (true, false) => {
+    if !args.models.is_empty() {
+        return Ok(args.models.clone());
+    }
+    let models = files::workspace().ok_or_else(no_model_file)?.join("models");
+    match args.quick {
+        true => Ok(vec![models.join("gyroscope.toml")]),
+        false => {
             let entries = fs::read_dir(&models).map_err(|e| unusable(&models, &e))?;
             let paths = entries.map(|entry| entry.map(|entry| entry.path()));
             let mut paths = paths.collect::<Result<Vec<_>, _>>().map_err(|e| unusable(&models, &e))?;

@@ -56,9 +56,9 @@ pub(crate) fn own(path: &Path, text: &str) -> Result<bool, Failure> {
 /// The documentation of the workspace and what is built are the tool's own; other folders are the user's.
 fn known(path: &Path) -> Known {
     let inside = |folder: &str| {
-        let own = fs::canonicalize(files::root().join(folder));
+        let own = files::workspace().map(|root| fs::canonicalize(root.join(folder)));
         let found = path.parent().map(fs::canonicalize);
-        matches!((own, found), (Ok(own), Some(Ok(found))) if found.starts_with(&own))
+        matches!((own, found), (Some(Ok(own)), Some(Ok(found))) if found.starts_with(&own))
     };
     if inside("docs/report") || inside("out/report") || inside("target") {
         Known::Place

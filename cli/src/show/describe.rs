@@ -22,7 +22,8 @@ pub(crate) fn scene(scene: &Scene, name: String, samples: &[Sample]) -> gyro_sho
     gyro_show::Scene { name, mechanism: mechanism(&scene.model), run: run(scene, samples) }
 }
 
-fn mechanism(model: &Model) -> gyro_show::Mechanism {
+/// What the picture is made of.
+pub(super) fn mechanism(model: &Model) -> gyro_show::Mechanism {
     gyro_show::Mechanism {
         name: model.name.clone(),
         gravity: model.values(&model.gravity),

@@ -222,7 +222,7 @@ fn tables_and_inputs_are_files() {
 /// is.
 #[test]
 fn the_table_has_the_inputs_and_the_object_names_components_and_files() {
-    let folder = Folder::new("inputs");
+    let folder = Folder::new("inputs-checked");
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/models/motor.toml");
     let text = fs::read_to_string(page).unwrap();
     let more = "\n[[output]]\nname = \"felt\"\nkind = \"acceleration\"\nbody = \"disc\"\n\
@@ -255,4 +255,101 @@ fn the_table_has_the_inputs_and_the_object_names_components_and_files() {
     let nowhere = json(&folder, &[page, "--engine", "assembled", "--t-end", "0.01"]);
     assert!(nowhere["files"]["time_series"].is_null(), "{nowhere}");
     assert!(nowhere["files"]["note"].as_str().unwrap().contains("--out"), "{nowhere}");
+}
+
+/// A mass of 2 kg on a spring of 50 N/m, with a brake and a motor whose strengths are inputs.
+const MASS: &str = r#"format = 1
+name = "mass"
+[inputs]
+push = 0
+drag = { value = 0.4, between = "held" }
+[[body]]
+name = "frame"
+fixed = true
+[[body]]
+name = "block"
+mass = 2
+inertia = [0.1, 0.1, 0.1]
+[[joint]]
+name = "rail"
+kind = "prismatic"
+axis = [1, 0, 0]
+zero = [0, 1, 0]
+first = { body = "frame" }
+second = { body = "block" }
+displacement = 0.3
+rate = -0.5
+[[force]]
+name = "spring"
+kind = "spring"
+joint = "rail"
+stiffness = 50
+free = 0
+[[force]]
+name = "brake"
+kind = "damper"
+joint = "rail"
+damping = "drag"
+[[force]]
+name = "pusher"
+kind = "motor"
+joint = "rail"
+value = "push"
+"#;
+
+const PUSH: [[f64; 2]; 5] = [[0.0, 3.0], [0.2, -5.0], [0.21, 8.0], [0.5, 1.0], [0.8, -4.0]];
+const DRAG: [[f64; 2]; 3] = [[0.0, 0.4], [0.3, 5.0], [0.6, 0.1]];
+
+/// Position and rate after a second: between knots the exponential of the plant with its push, a straight line.
+fn pushed(is_held: bool) -> [f64; 2] {
+    let row = |rows: &[[f64; 2]], t: f64| rows.iter().rposition(|row| row[0] <= t).unwrap();
+    let knots = [0.0, 0.2, 0.21, 0.3, 0.5, 0.6, 0.8, 1.0];
+    knots.windows(2).fold([0.3, -0.5], |[x, v], knots| {
+        let (t, k) = (knots[0], row(&PUSH, knots[0]));
+        let rise =
+            PUSH.get(k + 1).filter(|_| !is_held).map(|next| (next[1] - PUSH[k][1]) / (next[0] - PUSH[k][0]));
+        let (slope, drag) = (rise.unwrap_or(0.0), DRAG[row(&DRAG, t)][1]);
+        let push = PUSH[k][1] + slope * (t - PUSH[k][0]);
+        let mut plant = nalgebra::Matrix4::zeros();
+        (plant[(0, 1)], plant[(2, 3)]) = (1.0, 1.0);
+        (plant[(1, 0)], plant[(1, 1)], plant[(1, 2)]) = (-25.0, -drag / 2.0, 0.5);
+        let next = (plant * (knots[1] - t)).exp() * nalgebra::Vector4::new(x, v, push, slope);
+        [next[0], next[1]]
+    })
+}
+
+#[test]
+fn all_engines_follow_inputs_under_error_control() {
+    let folder = Folder::new("inputs-controlled");
+    fs::write(folder.0.join("mass.toml"), MASS).unwrap();
+    let table = |rows: &[[f64; 2]]| rows.iter().map(|[t, u]| format!("{t},{u}\n")).collect::<String>();
+    fs::write(folder.0.join("push.csv"), table(&PUSH)).unwrap();
+    fs::write(folder.0.join("drag.csv"), table(&DRAG)).unwrap();
+    let run = |between: &str, with: &str| {
+        let push = format!("push={between}push.csv");
+        let args = ["mass.toml", "--tolerance", "1e-10", "--input", &push, "--input", "drag=drag.csv"];
+        json(&folder, &args.into_iter().chain(with.split(' ')).collect::<Vec<_>>())
+    };
+    let by = [
+        "--engine dense --integrator dop853",
+        "--engine assembled --integrator tsit5",
+        "--engine recursive --integrator dop853",
+        "--engine generated --integrator dop853 --coordinates joint",
+        #[cfg(feature = "jit")]
+        "--engine jit --integrator rodas4 --coordinates joint",
+        #[cfg(feature = "jit")]
+        "--engine jit --integrator rodas4 --correction mass-weighted",
+        #[cfg(feature = "jit")]
+        "--engine jit --integrator tsit5 --correction closed-form",
+    ];
+    for (between, is_held) in [("held:", true), ("linear:", false), ("", false)] {
+        let expected = pushed(is_held);
+        for with in by {
+            let rail = &run(between, with)["joints"]["rail"];
+            for (key, expected) in ["position", "rate"].into_iter().zip(expected) {
+                let found = rail[key].as_f64().unwrap();
+                assert!((found - expected).abs() < 1e-8, "{between} {with}: {found} for {expected}");
+            }
+        }
+    }
 }

@@ -3,6 +3,7 @@
 
 mod cells;
 mod inputs;
+mod interrupted;
 mod refusals;
 mod support;
 

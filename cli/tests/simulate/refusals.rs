@@ -144,7 +144,6 @@ fn what_cannot_be_done_is_refused_by_one_code_and_leaves_no_folder() {
         (&[&controlled[..], &["nan"]].concat(), "a number above 0 and at most 1 was expected"),
         (&[&controlled[..], &["1e-16"]].concat(), "a tolerance of 1e-16 cannot be met"),
         (&[&controlled[..], &["1e-9", "--precision", "f32"]].concat(), "a tolerance of 1e-9 cannot be met"),
-        (&[&controlled[..], &["1e-9", "--input", "torque=ramp.csv"]].concat(), "inputs that vary are held"),
         (&["--step", "1e-12"], "steps of 1e-12 s, about"),
         (&["--step", "1e-15"], "at most 1e13 are accepted"),
     ] {

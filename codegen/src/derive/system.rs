@@ -1,6 +1,7 @@
 //! A model lowered to expressions: poses, joint frames, masses. Fixed bodies are constants, the others symbols.
 
 use crate::derive::frames::{End, JointFrames, sine_and_cosine};
+use crate::effort::Effort;
 use crate::expr::definitions::{Definitions, Expansion, Values};
 use crate::expr::differentiate::Direction;
 use crate::expr::graph::{ExprId, Graph};
@@ -24,6 +25,7 @@ pub struct Pose {
 #[derive(Debug)]
 pub struct System<'m> {
     pub model: &'m Model,
+    pub effort: Effort,
     /// In whose joint coordinates the mechanism is described, too.
     pub tree: Tree,
     pub graph: Graph,
@@ -42,9 +44,14 @@ pub struct System<'m> {
 
 impl<'m> System<'m> {
     pub fn new(model: &'m Model) -> Self {
+        Self::with_effort(model, Effort::Full)
+    }
+
+    pub fn with_effort(model: &'m Model, effort: Effort) -> Self {
         let (moving_bodies, tree) = (model.coordinate_bodies(), Tree::of_coordinates(model));
         let mut system = Self {
             model,
+            effort,
             tree,
             graph: Graph::new(),
             definitions: Definitions::default(),

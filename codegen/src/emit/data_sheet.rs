@@ -78,7 +78,9 @@ impl DataSheet {
             functions: (kernels.iter())
                 .map(|kernel| {
                     let repetition = repetitions.get(&kernel.1.roots).copied();
-                    Function { repetition, ..Function::of(&equations.graph, kernel) }
+                    let function = Function::of(&equations.graph, kernel);
+                    let operations = repetition.map_or(function.operations, |written| written.operations);
+                    Function { repetition, operations, ..function }
                 })
                 .collect(),
         }

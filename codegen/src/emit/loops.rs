@@ -2,34 +2,30 @@
 
 use crate::emit::literals::Literals;
 use crate::emit::tokens::{Body, Variables, Writer, ident, index};
-use crate::expr::graph::{ExprId, Graph, Node};
-use crate::expr::schedule::Program;
+use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
-use crate::repeat::{Direction, Local, Repeat, Rolled, Shape};
+use crate::repeat::{Direction, Local, Shape};
+use crate::tape::{Kernel, Loop};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
-use rustc_hash::FxHashSet as HashSet;
 use std::collections::BTreeSet;
 
 /// Writes a kernel with loops, with stand-ins for its literals.
-pub fn body(variables: &impl Variables, literals: &Literals, rolled: &Rolled) -> Body {
+pub fn body(variables: &impl Variables, literals: &Literals, kernel: &Kernel<Symbol, Constant>) -> Body {
     let outside = Outside { variables };
-    let roots: Vec<Vec<ExprId>> = rolled.loops.iter().map(|(before, _)| before.roots()).collect();
-    let all = rolled.outside_roots();
-    let program = Program::new(&rolled.graph, &all);
-    let writer = Writer::new(&rolled.graph, &outside, literals, (&program, "t"));
-    let parts = parts(rolled, &program, &roots);
-    let mut parts = writer.parts(&parts, &all).into_iter();
+    let writer = Writer::new(&kernel.outside, &outside, literals, "t");
+    let mut parts = writer.parts(&kernel.parts(), &kernel.roots()).into_iter();
     let mut symbols = writer.symbols();
-    let mut statements = arrays(&rolled.arrays);
+    let mut statements = arrays(&kernel.arrays);
     let mut has_literals = false;
     let mut n_fixed = 0;
-    for (number, (before, repeat)) in rolled.loops.iter().enumerate() {
-        let values = writer.values(&before.roots());
-        let (fixed, stored) = values.split_at(before.fixed.len());
+    for (number, repeat) in kernel.loops.iter().enumerate() {
+        let fixed = writer.values(&repeat.fixed);
         let names = (n_fixed..).take(fixed.len()).map(|n| ident(&format!("fixed{n}")));
         n_fixed += fixed.len();
-        let places = before.stores.iter().map(|&([array, row, column], _)| {
+        let (places, values): (Vec<_>, Vec<_>) = repeat.stores.iter().copied().unzip();
+        let stored = writer.values(&values);
+        let places = places.into_iter().map(|[array, row, column]| {
             let (array, row, column) = (array_name(array), index(row), index(column));
             quote! { #array[#row][#column] }
         });
@@ -41,38 +37,15 @@ pub fn body(variables: &impl Variables, literals: &Literals, rolled: &Rolled) ->
         statements.extend(quote! { #part #(let #names = #fixed;)* #(#places = #stored;)* #repeated });
     }
     statements.extend(parts.next());
-    let values = writer.values(&rolled.roots);
+    let values = writer.values(&kernel.results);
     symbols.retain(|symbol| !matches!(symbol, Symbol::Entry { .. } | Symbol::Local(_)));
     // What loops alone read by its place needs no name.
-    let named: BTreeSet<Symbol> =
-        symbols.iter().filter(|s| is_named(rolled, &program, **s)).copied().collect();
+    let tapes = [&kernel.outside].into_iter().chain(kernel.loops.iter().map(|repeat| &repeat.body));
+    let read: BTreeSet<Symbol> = tapes.flat_map(|tape| tape.variables()).copied().collect();
+    let named: BTreeSet<Symbol> = symbols.intersection(&read).copied().collect();
     let bindings = writer.bindings(&named);
     let literal = (has_literals || writer.has_literals()).then(|| quote! { let k = T::constant; });
     Body { statements: quote! { #literal #bindings #statements }, values, symbols }
-}
-
-/// Whether a variable is read by its name anywhere.
-fn is_named(rolled: &Rolled, program: &Program, symbol: Symbol) -> bool {
-    let is_it = |graph: &Graph, id: ExprId| matches!(graph.node(id), Node::Symbol(other) if *other == symbol);
-    program.uses.order.iter().any(|&id| is_it(&rolled.graph, id))
-        || rolled.loops.iter().any(|(_, repeat)| {
-            repeat.graph.reachable(&repeat.values).into_iter().any(|id| is_it(&repeat.graph, id))
-        })
-}
-
-/// Shared expressions that are bound before each loop, and after all of them.
-fn parts(rolled: &Rolled, program: &Program, roots: &[Vec<ExprId>]) -> Vec<Vec<ExprId>> {
-    let mut known: HashSet<ExprId> = HashSet::default();
-    let mut rest = program.temporaries.clone();
-    let mut parts = Vec::new();
-    for roots in roots {
-        known.extend(rolled.graph.reachable(roots));
-        let (part, after): (Vec<_>, Vec<_>) = rest.into_iter().partition(|id| known.contains(id));
-        parts.push(part);
-        rest = after;
-    }
-    parts.push(rest);
-    parts
 }
 
 fn array_name(array: usize) -> Ident {
@@ -112,7 +85,7 @@ impl<V: Variables> Variables for Outside<'_, V> {
 /// A loop, and the variables of its body.
 struct Repeated<'v, V> {
     number: usize,
-    repeat: &'v Repeat,
+    repeat: &'v Loop<Symbol, Constant>,
     variables: &'v V,
 }
 
@@ -125,14 +98,13 @@ struct RepeatedBody {
 impl<V: Variables> Repeated<'_, V> {
     fn body(&self, literals: &Literals) -> RepeatedBody {
         let repeat = self.repeat;
-        let program = Program::new(&repeat.graph, &repeat.values);
-        let writer = Writer::new(&repeat.graph, self, literals, (&program, "r"));
+        let writer = Writer::new(&repeat.body, self, literals, "r");
         let mut symbols = writer.symbols();
         let locals: BTreeSet<Symbol> =
             symbols.iter().filter(|s| matches!(s, Symbol::Local(_))).copied().collect();
         let bindings = writer.bindings(&locals);
-        let temporaries: TokenStream =
-            writer.parts(std::slice::from_ref(&program.temporaries), &repeat.values).into_iter().collect();
+        let named = std::slice::from_ref(&repeat.body.named);
+        let temporaries: TokenStream = writer.parts(named, &repeat.values).into_iter().collect();
         let values = writer.values(&repeat.values);
         let (array, row) = (array_name(repeat.array), row(repeat.offset));
         let count = index(repeat.count);
@@ -149,7 +121,7 @@ impl<V: Variables> Repeated<'_, V> {
                 #array[#row] = [#(#values),*];
             }
         };
-        symbols.extend(repeat.locals.iter().filter_map(|local| match local {
+        symbols.extend(self.repeat.locals.iter().filter_map(|local| match local {
             Local::Element { first, .. } => Some(*first),
             _ => None,
         }));

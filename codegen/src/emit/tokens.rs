@@ -1,10 +1,9 @@
-//! A straight-line program as Rust tokens.
+//! A tape as Rust tokens.
 
 use crate::emit::literals::Literals;
 use crate::expr::constant::Constant;
-use crate::expr::graph::{ExprId, Graph, Node};
-use crate::expr::schedule::Program;
 use crate::expr::symbol::Symbol;
+use crate::tape::{Exact, Kernel, Operation, Place};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 use rustc_hash::FxHashMap as HashMap;
@@ -49,14 +48,13 @@ enum Binding {
     Call,
 }
 
-/// Writes the program that computes `roots`, with stand-ins for its literals.
-pub fn body(graph: &Graph, variables: &impl Variables, literals: &Literals, roots: &[ExprId]) -> Body {
-    let program = Program::new(graph, roots);
-    let writer = Writer::new(graph, variables, literals, (&program, "t"));
+/// Writes a kernel without loops, with stand-ins for its literals.
+pub fn body(variables: &impl Variables, literals: &Literals, kernel: &Kernel<Symbol, Constant>) -> Body {
+    let writer = Writer::new(&kernel.outside, variables, literals, "t");
     let symbols = writer.symbols();
     let bindings = writer.bindings(&symbols);
-    let values = writer.values(roots);
-    let temporaries = writer.temporaries(roots);
+    let values = writer.values(&kernel.results);
+    let temporaries: TokenStream = writer.parts(&kernel.parts(), &kernel.results).into_iter().collect();
     let literal = writer.literal_binding();
     let statements = quote! { #literal #bindings #temporaries };
     Body { statements, values, symbols }
@@ -70,37 +68,26 @@ pub fn index(value: usize) -> Literal {
     Literal::usize_unsuffixed(value)
 }
 
-/// `x y + added`.
-fn fused(x: &TokenStream, y: &TokenStream, added: &TokenStream) -> (TokenStream, Binding) {
-    (quote! { T::fused(#x, #y, #added) }, Binding::Call)
-}
-
-/// Writes expressions of a graph.
+/// Writes the operations of a tape.
 pub struct Writer<'a, V> {
-    graph: &'a Graph,
+    tape: &'a Exact,
     variables: &'a V,
     literals: &'a Literals,
-    program: &'a Program,
-    names: HashMap<ExprId, Ident>,
+    names: HashMap<Place, Ident>,
     has_literals: Cell<bool>,
 }
 
 impl<'a, V: Variables> Writer<'a, V> {
-    /// Names of shared expressions begin with the given letter.
-    pub fn new(
-        graph: &'a Graph,
-        variables: &'a V,
-        literals: &'a Literals,
-        (program, letter): (&'a Program, &str),
-    ) -> Self {
-        let named = program.temporaries.iter().enumerate();
-        let names = named.map(|(n, &id)| (id, ident(&format!("{letter}{n}")))).collect();
-        Self { graph, variables, literals, program, names, has_literals: Cell::new(false) }
+    /// Names begin with the given letter.
+    pub fn new(tape: &'a Exact, variables: &'a V, literals: &'a Literals, letter: &str) -> Self {
+        let named = tape.named.iter().enumerate();
+        let names = named.map(|(n, &place)| (place, ident(&format!("{letter}{n}")))).collect();
+        Self { tape, variables, literals, names, has_literals: Cell::new(false) }
     }
 
     /// The variables that the program reads.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
-        self.program.uses.order.iter().filter_map(|&id| self.as_symbol(id)).collect()
+        self.tape.variables().copied().collect()
     }
 
     /// Binds variables to their names.
@@ -113,7 +100,7 @@ impl<'a, V: Variables> Writer<'a, V> {
     }
 
     /// Values as they stand at the end of an assignment.
-    pub fn values(&self, roots: &[ExprId]) -> Vec<TokenStream> {
+    pub fn values(&self, roots: &[Place]) -> Vec<TokenStream> {
         roots.iter().map(|&root| self.expression(root, Binding::Sum)).collect()
     }
 
@@ -126,20 +113,12 @@ impl<'a, V: Variables> Writer<'a, V> {
         self.has_literals.get()
     }
 
-    fn as_symbol(&self, id: ExprId) -> Option<Symbol> {
-        if let Node::Symbol(symbol) = self.graph.node(id) { Some(*symbol) } else { None }
-    }
-
-    fn temporaries(&self, roots: &[ExprId]) -> TokenStream {
-        self.parts(std::slice::from_ref(&self.program.temporaries), roots).into_iter().collect()
-    }
-
     /// Binds shared expressions, those of each part by themselves. Roots may be read after any part.
-    pub fn parts(&self, parts: &[Vec<ExprId>], roots: &[ExprId]) -> Vec<TokenStream> {
-        let n_temporaries = self.program.temporaries.len();
+    pub fn parts(&self, parts: &[Vec<Place>], roots: &[Place]) -> Vec<TokenStream> {
+        let n_temporaries = self.tape.named.len();
         let is_long = n_temporaries > LONG;
         let size = if is_long { PART } else { CHUNK };
-        let order: Vec<ExprId> = parts.concat();
+        let order: Vec<Place> = parts.concat();
         let last_use = if n_temporaries > CHUNK { self.last_uses(&order, roots) } else { HashMap::default() };
         let mut end = 0;
         let mut written = Vec::new();
@@ -168,10 +147,10 @@ impl<'a, V: Variables> Writer<'a, V> {
     }
 
     /// For each temporary the position of the last one that reads it; beyond all for a root.
-    fn last_uses(&self, order: &[ExprId], roots: &[ExprId]) -> HashMap<ExprId, usize> {
+    fn last_uses(&self, order: &[Place], roots: &[Place]) -> HashMap<Place, usize> {
         let mut last = HashMap::default();
         for (position, &id) in order.iter().enumerate() {
-            for operand in self.graph.node(id).operands() {
+            for operand in self.tape.operation(id).operands() {
                 self.mark(operand, position, &mut last);
             }
         }
@@ -181,25 +160,25 @@ impl<'a, V: Variables> Writer<'a, V> {
         last
     }
 
-    fn mark(&self, id: ExprId, position: usize, last: &mut HashMap<ExprId, usize>) {
+    fn mark(&self, id: Place, position: usize, last: &mut HashMap<Place, usize>) {
         if self.names.contains_key(&id) {
             let entry = last.entry(id).or_insert(position);
             *entry = position.max(*entry);
             return;
         }
-        for operand in self.graph.node(id).operands() {
+        for operand in self.tape.operation(id).operands() {
             self.mark(operand, position, last);
         }
     }
 
-    fn binding(&self, id: ExprId) -> TokenStream {
+    fn binding(&self, id: Place) -> TokenStream {
         let name = &self.names[&id];
         let (value, _) = self.operation(id);
         quote! { let #name = #value; }
     }
 
-    /// An expression by its name if it has one, in parentheses if it binds less strongly than needed.
-    fn expression(&self, id: ExprId, needed: Binding) -> TokenStream {
+    /// A number by its name if it has one, in parentheses if it binds less strongly than needed.
+    fn expression(&self, id: Place, needed: Binding) -> TokenStream {
         if let Some(name) = self.names.get(&id) {
             return quote! { #name };
         }
@@ -211,96 +190,45 @@ impl<'a, V: Variables> Writer<'a, V> {
         }
     }
 
-    fn operation(&self, id: ExprId) -> (TokenStream, Binding) {
-        match self.graph.node(id) {
-            Node::Constant(value) => (self.literal(value), Binding::Unary),
-            Node::Symbol(symbol) => (self.variables.variable(*symbol).0, Binding::Call),
-            Node::Add(a, b) => self.sum(*a, *b),
-            Node::Mul(a, b) => (self.product(*a, *b), Binding::Product),
-            Node::Neg(a) => self.negation(*a),
-            Node::Recip(a) => {
-                let (one, a) = (self.literal(&Constant::integer(1)), self.expression(*a, Binding::Unary));
-                (quote! { #one / #a }, Binding::Product)
+    fn operation(&self, id: Place) -> (TokenStream, Binding) {
+        let [sum, product, unary] = [Binding::Sum, Binding::Product, Binding::Unary]
+            .map(|needed| move |a: &Place| self.expression(*a, needed));
+        match self.tape.operation(id) {
+            Operation::Constant(value) => (self.literal(value), Binding::Unary),
+            Operation::Variable(symbol) => (self.variables.variable(*symbol).0, Binding::Call),
+            Operation::Add(a, b) => {
+                let (a, b) = (sum(a), product(b));
+                (quote! { #a + #b }, Binding::Sum)
             }
-            Node::Sqrt(a) => self.function("sqrt", *a),
-            Node::Sin(a) => self.function("sin", *a),
-            Node::Cos(a) => self.function("cos", *a),
-            Node::Tanh(a) => self.function("tanh", *a),
-            Node::Atan2(y, x) => {
-                // Odd in y: a sign before it may as well be one before the angle.
-                let (y, x) = (self.expression(*y, Binding::Unary), self.expression(*x, Binding::Sum));
+            Operation::Subtract(a, b) => {
+                let (a, b) = (sum(a), product(b));
+                (quote! { #a - #b }, Binding::Sum)
+            }
+            Operation::Multiply(a, b) => {
+                let (a, b) = (product(a), unary(b));
+                (quote! { #a * #b }, Binding::Product)
+            }
+            Operation::Divide(a, b) => {
+                let (a, b) = (product(a), unary(b));
+                (quote! { #a / #b }, Binding::Product)
+            }
+            Operation::Negate(a) => {
+                let a = unary(a);
+                (quote! { -#a }, Binding::Unary)
+            }
+            Operation::Fused(x, y, added) => {
+                let (x, y, added) = (sum(x), sum(y), sum(added));
+                (quote! { T::fused(#x, #y, #added) }, Binding::Call)
+            }
+            Operation::Sqrt(a) => self.function("sqrt", *a),
+            Operation::Sin(a) => self.function("sin", *a),
+            Operation::Cos(a) => self.function("cos", *a),
+            Operation::Tanh(a) => self.function("tanh", *a),
+            Operation::Atan2(y, x) => {
+                let (y, x) = (self.expression(*y, Binding::Call), sum(x));
                 (quote! { #y.atan2(#x) }, Binding::Call)
             }
         }
-    }
-
-    /// A product that nobody else uses becomes one operation with the sum.
-    fn sum(&self, a: ExprId, b: ExprId) -> (TokenStream, Binding) {
-        if let Node::Neg(subtracted) = self.graph.node(b) {
-            return self.difference(a, *subtracted);
-        }
-        let with_b = self.fusible(b).map(|factors| (factors, a));
-        if let Some((factors, added)) = with_b.or_else(|| Some((self.fusible(a)?, b))) {
-            let (x, y) = self.factors(factors);
-            return fused(&x, &y, &self.expression(added, Binding::Sum));
-        }
-        let (first, second) = (self.expression(a, Binding::Sum), self.expression(b, Binding::Product));
-        (quote! { #first + #second }, Binding::Sum)
-    }
-
-    fn difference(&self, from: ExprId, subtracted: ExprId) -> (TokenStream, Binding) {
-        if let Some((x, y)) = self.fusible(subtracted) {
-            let (x, y) = (self.expression(x, Binding::Unary), self.expression(y, Binding::Sum));
-            let minus_x = quote! { -#x };
-            return fused(&minus_x, &y, &self.expression(from, Binding::Sum));
-        }
-        if let Some(factors) = self.fusible(from) {
-            let ((x, y), added) = (self.factors(factors), self.expression(subtracted, Binding::Unary));
-            let minus_added = quote! { -#added };
-            return fused(&x, &y, &minus_added);
-        }
-        let first = self.expression(from, Binding::Sum);
-        let second = self.expression(subtracted, Binding::Product);
-        (quote! { #first - #second }, Binding::Sum)
-    }
-
-    fn factors(&self, (x, y): (ExprId, ExprId)) -> (TokenStream, TokenStream) {
-        (self.expression(x, Binding::Sum), self.expression(y, Binding::Sum))
-    }
-
-    /// The factors of a product that is written where it is used, and is not a quotient.
-    fn fusible(&self, id: ExprId) -> Option<(ExprId, ExprId)> {
-        match self.graph.node(id) {
-            Node::Mul(a, b)
-                if !self.names.contains_key(&id)
-                    && self.program.uses.quotient(self.graph, *a, *b).is_none() =>
-            {
-                Some((*a, *b))
-            }
-            _ => None,
-        }
-    }
-
-    fn product(&self, a: ExprId, b: ExprId) -> TokenStream {
-        if let Some((numerator, denominator)) = self.program.uses.quotient(self.graph, a, b) {
-            let numerator = self.expression(numerator, Binding::Product);
-            let denominator = self.expression(denominator, Binding::Unary);
-            return quote! { #numerator / #denominator };
-        }
-        let (a, b) = (self.expression(a, Binding::Product), self.expression(b, Binding::Unary));
-        quote! { #a * #b }
-    }
-
-    /// A difference that is not needed elsewhere has its operands swapped instead of being negated.
-    fn negation(&self, a: ExprId) -> (TokenStream, Binding) {
-        if let Node::Add(x, y) = self.graph.node(a)
-            && let Node::Neg(y) = self.graph.node(*y)
-            && !self.names.contains_key(&a)
-        {
-            return self.difference(*y, *x);
-        }
-        let a = self.expression(a, Binding::Unary);
-        (quote! { -#a }, Binding::Unary)
     }
 
     fn literal(&self, constant: &Constant) -> TokenStream {
@@ -308,7 +236,7 @@ impl<'a, V: Variables> Writer<'a, V> {
         self.literals.stand_in(constant)
     }
 
-    fn function(&self, name: &str, a: ExprId) -> (TokenStream, Binding) {
+    fn function(&self, name: &str, a: Place) -> (TokenStream, Binding) {
         let (name, a) = (ident(name), self.expression(a, Binding::Call));
         (quote! { #a.#name() }, Binding::Call)
     }
@@ -317,6 +245,8 @@ impl<'a, V: Variables> Writer<'a, V> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::expr::graph::{ExprId, Graph};
+    use crate::tape::straight;
 
     struct Coordinates;
 
@@ -336,7 +266,7 @@ mod tests {
         let mut graph = Graph::new();
         let [x, y] = [0, 1].map(|k| graph.symbol(Symbol::Coordinate(k)));
         let root = build(&mut graph, [x, y]);
-        let body = body(&graph, &Coordinates, &Literals::default(), &[root]);
+        let body = body(&Coordinates, &Literals::default(), &straight(&graph, &[root]));
         body.values[0].to_string().replace(' ', "")
     }
 

@@ -8,6 +8,7 @@ pub use rotations::Rotations;
 use crate::derive::kinematics::{Matrix, non_zeros};
 use crate::derive::system::System;
 use crate::derive::{Observed, Textbook};
+use crate::effort::Effort;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::groups::{Functions, Group};
@@ -39,6 +40,8 @@ pub struct Equations<'m> {
     /// What is asked for and what this needs.
     pub functions: Functions,
     pub graph: Graph,
+    /// How long forms are searched for.
+    pub effort: Effort,
     /// Tables of prescribed motions.
     pub tables: Vec<&'m Spline>,
     /// Joint rows, then normalisations.
@@ -77,6 +80,19 @@ pub struct Equations<'m> {
     pub passes: FinalPasses,
 }
 
+/// An argument of kernels that has many numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Argument {
+    /// The maximal state.
+    State,
+    /// The joint state.
+    Joints,
+    /// Accelerations, with multipliers of loops behind them; or rates' rates.
+    Accelerations,
+    /// Changes of rows that are asked for.
+    Rows,
+}
+
 /// The partition by charts.
 #[derive(Debug)]
 pub struct Charts {
@@ -108,7 +124,7 @@ impl<'m> Equations<'m> {
         (functions, joint_space): (&Functions, Option<JointSpace>),
     ) -> Self {
         let Parts { textbook: Textbook { kinematics, dynamics }, solution, observed, .. } = parts;
-        let System { model, tables, mut graph, moving_bodies, .. } = system;
+        let System { model, effort, tables, mut graph, moving_bodies, .. } = system;
         let has_kinematics = functions.has(Group::Kinematics);
         let (phi_pi, n_vanishing) = if has_kinematics {
             virtual_jacobian(&mut graph, &mut rotations, &kinematics.phi_pi, moving_bodies.len())
@@ -124,6 +140,7 @@ impl<'m> Equations<'m> {
         let (nu, gamma) = (of_kinematics(&kinematics.nu), of_kinematics(&kinematics.gamma));
         let mut equations = Self {
             model,
+            effort,
             functions: functions.clone(),
             phi,
             phi_q: Sparse(phi_q.map_or(Vec::new(), |phi_q| non_zeros(&phi_q))),
@@ -172,6 +189,37 @@ impl<'m> Equations<'m> {
 
     pub fn n_state(&self) -> usize {
         13 * self.n_moving_bodies() + usize::from(self.power.is_some()) + self.turn_rates.len()
+    }
+
+    /// The argument that a variable is an element of, and where, if it is.
+    pub fn element(&self, symbol: Symbol) -> Option<(Argument, usize)> {
+        let n_bodies = self.n_moving_bodies();
+        match symbol {
+            Symbol::Position { moving_body, k } => Some((Argument::State, 7 * moving_body + k)),
+            Symbol::Euler { moving_body, k } => Some((Argument::State, 7 * moving_body + 3 + k)),
+            Symbol::Velocity { moving_body, k } => {
+                Some((Argument::State, 7 * n_bodies + 6 * moving_body + k))
+            }
+            Symbol::Spin { moving_body, k } => {
+                Some((Argument::State, 7 * n_bodies + 6 * moving_body + 3 + k))
+            }
+            Symbol::Turn(turn) => {
+                let work = usize::from(self.power.is_some());
+                Some((Argument::State, 13 * n_bodies + work + turn))
+            }
+            Symbol::Acceleration { moving_body, k } => Some((Argument::Accelerations, 6 * moving_body + k)),
+            Symbol::LoopMultiplier(row) => Some((Argument::Accelerations, self.n_velocities() + row)),
+            Symbol::Change(row) => Some((Argument::Rows, row)),
+            Symbol::RateOfRate(place) => Some((Argument::Accelerations, place)),
+            Symbol::Coordinate(place) => Some((Argument::Joints, place)),
+            Symbol::Rate(place) => Some((Argument::Joints, self.n_coordinates() + place)),
+            _ => None,
+        }
+    }
+
+    /// Length of x.
+    pub fn n_coordinates(&self) -> usize {
+        self.joint_space.as_ref().map_or(0, |space| space.layout.n_coordinates)
     }
 
     /// ẏ without the accelerations.

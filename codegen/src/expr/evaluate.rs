@@ -60,7 +60,6 @@ pub fn evaluate<F: Float>(graph: &Graph, roots: &[ExprId], value: impl Fn(Symbol
 }
 
 /// A reproducible value between −1 and 1 for each symbol.
-#[cfg(test)]
 pub fn sample(seed: u64) -> impl Fn(Symbol) -> f64 {
     use std::hash::{DefaultHasher, Hash, Hasher};
     move |symbol| {

@@ -7,7 +7,10 @@
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
 use gyro_model::Rational;
-use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
+use rustc_hash::{FxBuildHasher, FxHashSet as HashSet};
+use std::hash::BuildHasher;
 
 /// Handle of an expression in its [`Graph`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -67,7 +70,8 @@ impl Node {
 #[derive(Debug)]
 pub struct Graph {
     nodes: Vec<Node>,
-    index: HashMap<Node, ExprId>,
+    /// By their hashes.
+    index: HashTable<ExprId>,
     /// Of each node, what it changes with.
     changes: Vec<Changes>,
 }
@@ -85,7 +89,7 @@ impl Graph {
     pub const ONE: ExprId = ExprId(1);
 
     pub fn new() -> Self {
-        let mut graph = Self { nodes: Vec::new(), index: HashMap::default(), changes: Vec::new() };
+        let mut graph = Self { nodes: Vec::new(), index: HashTable::new(), changes: Vec::new() };
         graph.integer(0);
         graph.integer(1);
         graph
@@ -370,23 +374,26 @@ impl Graph {
 
     /// An expression as it is, without any simplification.
     pub fn intern(&mut self, node: Node) -> ExprId {
-        if let Some(&id) = self.index.get(&node) {
-            return id;
-        }
+        let Self { nodes, index, changes } = self;
+        let hash = |node: &Node| FxBuildHasher.hash_one(node);
+        let same = |id: &ExprId| nodes[id.0 as usize] == node;
+        let vacant = match index.entry(hash(&node), same, |id| hash(&nodes[id.0 as usize])) {
+            Entry::Occupied(known) => return *known.get(),
+            Entry::Vacant(vacant) => vacant,
+        };
         let id = ExprId(
-            u32::try_from(self.nodes.len()).expect("four thousand million expressions do not fit in memory"),
+            u32::try_from(nodes.len()).expect("four thousand million expressions do not fit in memory"),
         );
-        let changes = match &node {
+        vacant.insert(id);
+        changes.push(match &node {
             Node::Symbol(Symbol::Parameter(_)) => Changes::WithParameters,
             Node::Symbol(_) => Changes::WithState,
             operation => {
-                let operands = operation.operands().map(|operand| self.changes[operand.0 as usize]);
+                let operands = operation.operands().map(|operand| changes[operand.0 as usize]);
                 operands.max().unwrap_or(Changes::Never)
             }
-        };
-        self.changes.push(changes);
-        self.nodes.push(node.clone());
-        self.index.insert(node, id);
+        });
+        nodes.push(node);
         id
     }
 }

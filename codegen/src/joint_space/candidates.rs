@@ -5,6 +5,7 @@ use super::coordinates::Coordinates;
 use super::dynamics::{self, JointDynamics, MAX_FACTORED, NORMAL_FORM};
 use super::planar;
 use crate::derive::system::System;
+use crate::effort::Effort;
 use crate::expr::definitions::Values;
 use crate::expr::graph::ExprId;
 use crate::expr::symbol::Symbol;
@@ -44,7 +45,8 @@ impl Candidates {
         let balance = JointDynamics::new(system, links, &spins, loads, along, (embedding, rows.clone()));
         let mut reductions = Vec::new();
         let mut eliminated = vec![("recursion", balance.recursion(system))];
-        if embedding.n_unknowns <= MAX_FACTORED && rows.is_empty() {
+        let tries_all = system.effort == Effort::Full;
+        if tries_all && embedding.n_unknowns <= MAX_FACTORED && rows.is_empty() {
             eliminated.push((NORMAL_FORM, balance.factored(system, unit, &mut reductions)));
         }
         if let Some(found) = planar::accelerations(system, coordinates) {
@@ -65,8 +67,8 @@ impl Candidates {
         let eliminated_on_spins = vec![("recursion on the bodies' spins", on_spins.recursion(system))];
         let is_small = (2..=gram_schmidt::MAX_RATES).contains(&embedding.n_unknowns) && rows.is_empty();
         let by_gram_schmidt = is_small.then(|| ("Gram–Schmidt", balance.by_gram_schmidt(system)));
-        let by_gram_schmidt_on_spins =
-            is_small.then(|| ("Gram–Schmidt on the bodies' spins", on_spins.by_gram_schmidt(system)));
+        let by_gram_schmidt_on_spins = (is_small && tries_all)
+            .then(|| ("Gram–Schmidt on the bodies' spins", on_spins.by_gram_schmidt(system)));
         Self {
             balance,
             eliminated,

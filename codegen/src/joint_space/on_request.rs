@@ -242,7 +242,7 @@ mod tests {
     fn operations(page: &str, group: &str, wanted: [Kernel; 2]) -> [Operations; 2] {
         let model = gyro_model::read("page.toml", page).unwrap_or_else(|error| panic!("{error}\n{page}"));
         let (start, functions) = (model.assemble().expect("a start"), Functions::named([group]));
-        let asked = (crate::Elimination::NullSpace, &functions.expect("a group"));
+        let asked = (crate::Elimination::NullSpace, &functions.expect("a group"), crate::Effort::Full);
         let mut equations = crate::equations(&model, asked, &start);
         let mut kernels = Kernels::of(&equations);
         kernels.finish(&mut equations.graph, equations.passes);

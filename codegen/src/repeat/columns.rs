@@ -3,6 +3,7 @@
 use super::loops::{Direction, Loops};
 use super::orbits::{Orbit, Orbits};
 use super::terms::{Kind, Place, Terms};
+use crate::equations::Argument;
 use std::collections::BTreeMap;
 
 /// Where an operand of an orbit comes from, for all parts.
@@ -39,7 +40,7 @@ pub struct Columns {
 }
 
 /// Which array an element of an argument is in, and where.
-pub type Element = (&'static str, usize);
+pub type Element = (Argument, usize);
 
 struct Filling<'t> {
     terms: &'t Terms,

@@ -14,7 +14,9 @@ const SWEEPS: usize = 10;
 /// In which order a loop goes through the parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
+    /// From the first to the last.
     Forward,
+    /// From the last to the first.
     Backward,
 }
 

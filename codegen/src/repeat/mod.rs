@@ -16,8 +16,9 @@ mod signs;
 mod terms;
 
 pub use loops::Direction;
-pub use rolled::{Local, Repeat, Repetition, Rolled, Shape};
+pub use rolled::{Before, Local, Repeat, Repetition, Rolled, Shape};
 
+use crate::effort::Effort;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Operations;
 use crate::expr::symbol::Symbol;
@@ -25,7 +26,7 @@ use columns::{Columns, Element};
 use loops::Loops;
 use orbits::Orbits;
 use rolled::Rolling;
-use shift::Shift;
+use shift::{Shift, Way};
 use signs::Signs;
 use terms::{Place, Terms};
 
@@ -35,12 +36,20 @@ const LEAST_OPERATIONS: usize = 3000;
 /// Parts that are worth a loop.
 const LEAST_PARTS: usize = 4;
 
-/// Steps from term to term by which colours are compared, and after how many variables of one colour a part repeats;
-/// the way that leaves the shortest text is taken.
-const WAYS: [(usize, usize); 5] = [(2, 1), (1, 1), (3, 1), (2, 2), (2, 3)];
+/// The ways that are tried; the one that leaves the shortest text is taken.
+const WAYS: [Way; 6] = [
+    Way { n_steps: 2, stride: 1, copies: false },
+    Way { n_steps: 2, stride: 3, copies: false },
+    Way { n_steps: 2, stride: 1, copies: true },
+    Way { n_steps: 1, stride: 1, copies: false },
+    Way { n_steps: 3, stride: 1, copies: false },
+    Way { n_steps: 2, stride: 2, copies: false },
+];
 
-/// A text that is so many times shorter is short enough to try no other way.
+/// A text that is so many times shorter is short enough to try no other way, but if it is longer than this and its
+/// parts are several links each.
 const SHORT: usize = 5;
+const LONG: usize = 4000;
 
 /// A kernel with loops, if it is long and loops make its text shorter by half. `element` says in which argument a
 /// variable is, and where.
@@ -48,15 +57,17 @@ pub fn rolled(
     graph: &Graph,
     roots: &[ExprId],
     element: &dyn Fn(Symbol) -> Option<Element>,
+    effort: Effort,
 ) -> Option<Rolled> {
-    rolled_from(LEAST_OPERATIONS, graph, roots, element)
+    let n_ways = if effort == Effort::Quick { 1 } else { WAYS.len() };
+    rolled_by(&WAYS[..n_ways], LEAST_OPERATIONS, (graph, roots), element)
 }
 
-/// The same from so many operations on.
-fn rolled_from(
+/// The same in some ways, from so many operations on.
+fn rolled_by(
+    ways: &[Way],
     n_least: usize,
-    graph: &Graph,
-    roots: &[ExprId],
+    (graph, roots): (&Graph, &[ExprId]),
     element: &dyn Fn(Symbol) -> Option<Element>,
 ) -> Option<Rolled> {
     let n_operations = Operations::count(graph, roots).total();
@@ -64,35 +75,40 @@ fn rolled_from(
         return None;
     }
     let terms = Terms::of(graph, roots);
-    let element = |place: Place| match graph.node(terms.all[place].id) {
-        Node::Symbol(symbol) => element(*symbol),
-        _ => None,
-    };
-    let mut shortest: Option<Rolled> = None;
-    for way in WAYS {
-        let least = shortest.as_ref().map_or(n_operations.div_ceil(2), Rolled::n_written);
-        if SHORT * least < n_operations {
-            break;
-        }
-        let found = in_one_way(graph, &terms, (roots, &element), way);
-        shortest = found.filter(|rolled| rolled.n_written() < least).or(shortest);
+    let mut shortest: Option<(Rolled, Way)> = None;
+    for &way in ways {
+        let least = match &shortest {
+            Some((rolled, of)) => {
+                let is_good = rolled.length() < LONG || of.stride == 1;
+                if is_good && SHORT * rolled.length() < n_operations {
+                    break;
+                }
+                rolled.length()
+            }
+            None => n_operations.div_ceil(2),
+        };
+        let found = in_one_way(graph, &terms, element, way);
+        shortest = found.filter(|rolled| rolled.length() < least).map(|rolled| (rolled, way)).or(shortest);
     }
-    shortest
+    shortest.map(|(rolled, _)| rolled)
 }
 
 fn in_one_way(
     graph: &Graph,
     terms: &Terms,
-    (roots, element): (&[ExprId], &dyn Fn(Place) -> Option<Element>),
-    way: (usize, usize),
+    element: &dyn Fn(Symbol) -> Option<Element>,
+    way: Way,
 ) -> Option<Rolled> {
-    let shift = Shift::find(graph, terms, way);
-    let orbits = &Orbits::of(terms, &shift, LEAST_PARTS);
+    let (terms, shift) = &Shift::find(graph, terms, way);
+    let element = |place: Place| match graph.node(terms.all[place].id) {
+        Node::Symbol(symbol) => element(*symbol),
+        _ => None,
+    };
+    let orbits = &Orbits::of(terms, shift, LEAST_PARTS);
     let loops = &Loops::plan(terms, orbits)?;
-    let columns = &Columns::of(terms, orbits, loops, element)?;
+    let columns = &Columns::of(terms, orbits, loops, &element)?;
     let signs = &Signs::solve(terms, orbits, loops, columns)?;
-    let rolling = Rolling { source: graph, terms, orbits, loops, columns, signs };
-    Some(rolling.rolled(roots))
+    Some(Rolling { source: graph, terms, orbits, loops, columns, signs }.rolled())
 }
 
 #[cfg(test)]

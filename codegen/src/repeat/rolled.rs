@@ -4,7 +4,7 @@ use super::columns::{Columns, Source};
 use super::loops::{Direction, Loops};
 use super::orbits::{Orbit, Orbits};
 use super::signs::Signs;
-use super::terms::{Kind, Place, Terms};
+use super::terms::{Kind, Operand, Place, Term, Terms};
 use crate::expr::constant::Constant;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Operations;
@@ -57,7 +57,9 @@ pub struct Before {
 /// Rows and columns of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
+    /// How many rows it has.
     pub rows: usize,
+    /// How many numbers a row has.
     pub columns: usize,
 }
 
@@ -70,6 +72,8 @@ pub struct Repetition {
     pub copies: usize,
     /// Operations of its text; straight-line code has one for each that it does.
     pub written: usize,
+    /// Operations that it does: a few more than straight-line code where parts share what others do not.
+    pub operations: Operations,
 }
 
 /// A kernel with loops.
@@ -93,7 +97,26 @@ impl Rolled {
     /// What the data sheet says of it.
     pub fn repetition(&self) -> Repetition {
         let copies = self.loops.iter().map(|(_, repeat)| repeat.count).max().unwrap_or(0);
-        Repetition { loops: self.loops.len(), copies, written: self.n_written() }
+        Repetition { loops: self.loops.len(), copies, written: self.n_written(), operations: self.executed() }
+    }
+
+    /// Operations as they are executed.
+    pub fn executed(&self) -> Operations {
+        let mut sum = Operations::count(&self.graph, &self.outside_roots());
+        for (_, repeat) in &self.loops {
+            let body = Operations::count(&repeat.graph, &repeat.values);
+            sum.additions += repeat.count * body.additions;
+            sum.multiplications += repeat.count * body.multiplications;
+            sum.divisions += repeat.count * body.divisions;
+            sum.functions += repeat.count * body.functions;
+        }
+        sum
+    }
+
+    /// How long its text is: operations, and stores for loops to read.
+    pub fn length(&self) -> usize {
+        let stores: usize = self.loops.iter().map(|(before, _)| before.stores.len()).sum();
+        self.n_written() + stores
     }
 
     /// How many operations its text has.
@@ -128,10 +151,10 @@ pub struct Rolling<'t> {
 }
 
 impl Rolling<'_> {
-    pub fn rolled(&self, roots: &[ExprId]) -> Rolled {
+    pub fn rolled(&self) -> Rolled {
         let arrays = self.arrays();
-        let (mut graph, mut values) = (Graph::new(), HashMap::default());
-        self.outside(&mut graph, &arrays, roots, &mut values);
+        let mut graph = Graph::new();
+        let values = self.outside(&mut graph, &arrays);
         let mut fixed: Vec<ExprId> = Vec::new();
         let loops = (0..self.loops.all.len()).map(|index| {
             let first_fixed = fixed.len();
@@ -140,7 +163,11 @@ impl Rolling<'_> {
             (Before { fixed: fixed[first_fixed..].to_vec(), stores }, repeat)
         });
         let loops = loops.collect();
-        let roots = roots.iter().map(|root| values[root]).collect();
+        let signed = |root: &Operand| {
+            let value = values[&root.term];
+            if root.is_negative { graph.neg(value) } else { value }
+        };
+        let roots = self.terms.roots.iter().map(signed).collect();
         let shape = |array: &Array| Shape {
             rows: usize::try_from(array.last - array.first + 1).unwrap_or(0),
             columns: array.columns.len(),
@@ -178,41 +205,56 @@ impl Rolling<'_> {
         [array, usize::try_from(row - arrays[array].first).expect("no row is before the first"), at]
     }
 
-    /// What is computed outside of loops, loops' results being read from arrays.
-    fn outside(
-        &self,
-        graph: &mut Graph,
-        arrays: &[Array],
-        roots: &[ExprId],
-        values: &mut HashMap<ExprId, ExprId>,
-    ) {
-        let computed: HashMap<ExprId, Place> = (self.terms.all.iter().enumerate())
-            .filter(|(place, _)| self.loops.of_term[*place].is_some())
-            .map(|(place, term)| (term.id, place))
-            .collect();
-        for id in self.source.reachable(roots) {
-            let value = match computed.get(&id) {
-                Some(&term) => {
-                    let ((orbit, _), (_, part)) = (
-                        self.orbits.of_term[term].expect("it is computed in a loop"),
-                        self.loops.of_term[term].expect("it is computed in a loop"),
-                    );
+    /// The values of terms outside of loops, loops' results being read from arrays.
+    fn outside(&self, graph: &mut Graph, arrays: &[Array]) -> HashMap<Place, ExprId> {
+        let mut values = HashMap::default();
+        // Array and column that hold what an orbit computes.
+        let mut kept: HashMap<Orbit, Option<[usize; 2]>> = HashMap::default();
+        for place in 0..self.terms.all.len() {
+            let value = match self.loops.of_term[place] {
+                Some((_, part)) => {
+                    let (orbit, _) = self.orbits.of_term[place].expect("it is computed in a loop");
+                    let column = kept.entry(orbit).or_insert_with(|| {
+                        let column = self.columns.of_orbit(orbit)?;
+                        let [array, _, column] = self.place(arrays, column, part);
+                        Some([array, column])
+                    });
                     // Nothing outside reads what has no column.
-                    let Some(column) = self.columns.of_orbit(orbit) else { continue };
-                    let [array, row, column] = self.place(arrays, column, part);
+                    let Some([array, column]) = *column else { continue };
+                    let row =
+                        usize::try_from(part - arrays[array].first).expect("no row is before the first");
                     let entry = graph.symbol(Symbol::Entry { array, row, column });
-                    if self.signs.of_term[&term] { graph.neg(entry) } else { entry }
+                    if self.signs.of_term[&place] { graph.neg(entry) } else { entry }
                 }
                 None => {
-                    let node = self.source.node(id);
-                    if node.operands().any(|operand| !values.contains_key(&operand)) {
-                        continue;
-                    }
-                    let node = node.with_operands(|operand| values[&operand]);
-                    built(graph, node)
+                    let term = &self.terms.all[place];
+                    let node = self.source.node(term.id);
+                    let operands =
+                        node.operands().map(|id| Some((id, self.operand(graph, &values, term, id)?)));
+                    let Some(operands) = operands.collect::<Option<HashMap<_, _>>>() else { continue };
+                    built(graph, node.with_operands(|id| operands[&id]))
                 }
             };
-            values.insert(id, value);
+            values.insert(place, value);
+        }
+        values
+    }
+
+    /// An operand of the expression that a term stands for, if its value is known.
+    fn operand(
+        &self,
+        graph: &mut Graph,
+        values: &HashMap<Place, ExprId>,
+        term: &Term,
+        id: ExprId,
+    ) -> Option<ExprId> {
+        if let Some(operand) = term.operands.iter().find(|operand| self.terms.all[operand.term].id == id) {
+            return values.get(&operand.term).copied();
+        }
+        match self.source.node(id) {
+            Node::Neg(x) => self.operand(graph, values, term, *x).map(|x| graph.neg(x)),
+            Node::Recip(x) => self.operand(graph, values, term, *x).map(|x| graph.recip(x)),
+            node => Some(built(graph, node.clone())),
         }
     }
 
@@ -221,12 +263,12 @@ impl Rolling<'_> {
         index: usize,
         graph: &mut Graph,
         arrays: &[Array],
-        values: &HashMap<ExprId, ExprId>,
+        values: &HashMap<Place, ExprId>,
     ) -> Vec<([usize; 3], ExprId)> {
         let mut stores = Vec::new();
         for (place, column) in self.columns.all.iter().enumerate() {
             for (&row, &term) in column.rows.iter().filter(|(row, _)| column.readers[row] == index) {
-                let value = values[&self.terms.all[term].id];
+                let value = values[&term];
                 let is_opposite = self.signs.of_row.get(&(place, row)).copied().unwrap_or(false);
                 let value = if is_opposite { graph.neg(value) } else { value };
                 stores.push((self.place(arrays, place, row), value));
@@ -240,7 +282,7 @@ impl Rolling<'_> {
         &self,
         index: usize,
         arrays: &[Array],
-        values: &HashMap<ExprId, ExprId>,
+        values: &HashMap<Place, ExprId>,
         fixed: &mut Vec<ExprId>,
     ) -> Repeat {
         let found = &self.loops.all[index];
@@ -293,7 +335,7 @@ struct Body<'r, 't> {
     locals: Vec<Local>,
     table: Vec<Vec<Constant>>,
     fixed: &'r mut Vec<ExprId>,
-    outside: &'r HashMap<ExprId, ExprId>,
+    outside: &'r HashMap<Place, ExprId>,
 }
 
 impl Body<'_, '_> {
@@ -335,7 +377,7 @@ impl Body<'_, '_> {
             Source::Same(term) => match symbol(term) {
                 Some(symbol) => self.graph.symbol(symbol),
                 None => {
-                    let value = self.outside[&terms.all[term].id];
+                    let value = self.outside[&term];
                     let at = self.fixed.iter().position(|&known| known == value).unwrap_or_else(|| {
                         self.fixed.push(value);
                         self.fixed.len() - 1

@@ -1,10 +1,21 @@
 //! The shift: which term of the next part corresponds to a term of this part.
 
 use super::colours::colours;
-use super::terms::{Kind, Place, Terms, variable};
+use super::terms::{Kind, Operand, Place, Term, Terms, variable};
 use crate::expr::graph::{Graph, Node};
 use rustc_hash::FxHashMap as HashMap;
 use std::collections::BTreeMap;
+
+/// How parts are found.
+#[derive(Clone, Copy, Debug)]
+pub struct Way {
+    /// Steps from term to term by which colours are compared.
+    pub n_steps: usize,
+    /// After how many variables of one colour a part repeats.
+    pub stride: usize,
+    /// Whether what serves two terms in one part and one of them in another is computed twice.
+    pub copies: bool,
+}
 
 /// A partial one-to-one map of terms to terms of the same kind, such that operands of what corresponds correspond.
 #[derive(Debug)]
@@ -13,20 +24,34 @@ pub struct Shift {
     pub previous: Vec<Option<Place>>,
 }
 
-struct Search<'t> {
-    terms: &'t Terms,
+/// So many operations for each one that is computed twice: the verifier allows twice as many.
+pub const OPERATIONS_A_COPY: usize = 100;
+
+struct Search {
+    terms: Terms,
     colours: Vec<u64>,
     shift: Shift,
     /// Terms around which something has changed since they were looked at.
     is_open: Vec<bool>,
+    /// Of which term each is a copy: most of themselves.
+    originals: Vec<Place>,
+    most_terms: usize,
 }
 
 impl Shift {
-    /// Starts from variables of one colour, in their order: to each corresponds the one so many places after it.
-    pub fn find(graph: &Graph, terms: &Terms, (n_steps, stride): (usize, usize)) -> Self {
+    /// Starts from variables of one colour, in their order: to each corresponds the one so many places after it. What
+    /// serves two terms in one part and has a counterpart for each in another is copied: the terms, with the copies.
+    pub fn find(graph: &Graph, terms: &Terms, way: Way) -> (Terms, Self) {
+        let Way { n_steps, stride, copies } = way;
         let n = terms.all.len();
-        let shift = Self { next: vec![None; n], previous: vec![None; n] };
-        let mut search = Search { terms, colours: colours(terms, n_steps), shift, is_open: vec![true; n] };
+        let mut search = Search {
+            terms: terms.clone(),
+            colours: colours(terms, n_steps),
+            shift: Self { next: vec![None; n], previous: vec![None; n] },
+            is_open: vec![true; n],
+            originals: (0..n).collect(),
+            most_terms: n + n / OPERATIONS_A_COPY,
+        };
         let mut classes: BTreeMap<(Kind, u64), Vec<(usize, Place)>> = BTreeMap::new();
         for (place, term) in terms.all.iter().enumerate() {
             if let Node::Symbol(symbol) = graph.node(term.id) {
@@ -38,13 +63,19 @@ impl Shift {
             class.sort_unstable();
             class.windows(stride + 1).for_each(|members| search.pair(members[0].1, members[stride].1));
         }
-        search.spread(true);
-        search.spread(false);
-        search.shift
+        for by_colour in [true, false] {
+            search.is_open.fill(true);
+            search.spread(by_colour);
+        }
+        search.choose_users();
+        if copies {
+            search.copy_operands();
+        }
+        search.sorted()
     }
 }
 
-impl Search<'_> {
+impl Search {
     fn pair(&mut self, one: Place, other: Place) {
         let Shift { next, previous } = &mut self.shift;
         let is_free = next[one].is_none() && previous[other].is_none();
@@ -71,18 +102,153 @@ impl Search<'_> {
     }
 
     fn spread(&mut self, by_colour: bool) {
-        self.is_open.fill(true);
         while self.is_open.contains(&true) {
-            for one in 0..self.terms.all.len() {
-                if !std::mem::replace(&mut self.is_open[one], false) {
-                    continue;
-                }
-                if let Some(other) = self.shift.next[one] {
-                    self.operands(one, other, by_colour);
-                    self.users(one, other, by_colour);
+            let mut at = 0;
+            while let Some(further) = self.is_open[at..].iter().position(|&is_open| is_open) {
+                at += further;
+                self.is_open[at] = false;
+                if let Some(other) = self.shift.next[at] {
+                    self.operands(at, other, by_colour);
+                    self.users(at, other, by_colour);
                 }
             }
         }
+    }
+
+    /// A pair that was chosen, and what follows from it.
+    fn choose(&mut self, one: Place, other: Place) {
+        self.pair(one, other);
+        let open = self.is_open.clone();
+        self.spread(true);
+        self.is_open = open;
+        self.spread(false);
+    }
+
+    /// Where several users of a term are alike, they correspond in their order.
+    fn choose_users(&mut self) {
+        for one in 0..self.terms.all.len() {
+            let Some(other) = self.shift.next[one] else { continue };
+            let ours = self.groups(one, |user| self.shift.next[user].is_none());
+            let theirs = self.groups(other, |user| self.shift.previous[user].is_none());
+            for (key, ours) in ours {
+                let theirs = theirs.get(&key).filter(|theirs| theirs.len() == ours.len());
+                for (a, &b) in ours.into_iter().zip(theirs.into_iter().flatten()) {
+                    if self.shift.next[a].is_none() && self.shift.previous[b].is_none() {
+                        self.choose(a, b);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The users of a term by kind, colour and whether their operands have one sign.
+    fn groups(
+        &self,
+        place: Place,
+        is_open: impl Fn(Place) -> bool,
+    ) -> BTreeMap<(Kind, u64, bool), Vec<Place>> {
+        let mut groups: BTreeMap<_, Vec<Place>> = BTreeMap::new();
+        for &user in self.terms.all[place].users.iter().filter(|&&user| is_open(user)) {
+            let Term { kind, operands, .. } = &self.terms.all[user];
+            let is_one_sign = operands.iter().all(|o| o.is_negative == operands[0].is_negative);
+            groups.entry((*kind, self.colours[user], is_one_sign)).or_default().push(user);
+        }
+        groups
+    }
+
+    /// Copies operands of terms that correspond and themselves do not.
+    fn copy_operands(&mut self) {
+        let mut one = 0;
+        while one < self.terms.all.len() {
+            let other = self.shift.next[one];
+            let counterparts = other.map(|other| self.counterparts(one, other)).unwrap_or_default();
+            for (a, b) in counterparts {
+                let Some(other) = self.shift.next[one].filter(|_| !self.is_known(a, b)) else { continue };
+                let kinds = [a, b].map(|place| self.terms.all[place].kind);
+                if kinds[0] != kinds[1] || !kinds[0].is_operation() {
+                    continue;
+                }
+                let a = if self.shift.next[a].is_some() { self.copy(a, one) } else { Some(a) };
+                let b = if self.shift.previous[b].is_some() { self.copy(b, other) } else { Some(b) };
+                if let (Some(a), Some(b)) = (a, b) {
+                    self.choose(a, b);
+                }
+            }
+            one += 1;
+        }
+    }
+
+    /// Operands that would have to correspond.
+    fn counterparts(&self, one: Place, other: Place) -> Vec<(Place, Place)> {
+        let operands =
+            |place: Place| self.terms.all[place].operands.iter().map(|o| o.term).collect::<Vec<_>>();
+        let (a, mut b) = (operands(one), operands(other));
+        if self.terms.all[one].kind.is_commutative() {
+            let known = |k: usize, l: usize| self.is_known(a[k], b[l]);
+            let alike = |k: usize, l: usize| self.do_the_same(a[k], b[l]);
+            if !known(0, 0) && !known(1, 1) {
+                if known(0, 1) || known(1, 0) || alike(0, 1) && alike(1, 0) {
+                    b.swap(0, 1);
+                } else if !alike(0, 0) || !alike(1, 1) {
+                    return Vec::new();
+                }
+            }
+        }
+        a.into_iter().zip(b).collect()
+    }
+
+    /// Whether terms do the same with operands that correspond.
+    fn do_the_same(&self, one: Place, other: Place) -> bool {
+        let [a, b] = [one, other].map(|place| &self.terms.all[place]);
+        let known = |a: &Operand, b: &Operand| self.is_known(a.term, b.term);
+        let straight = || a.operands.iter().zip(&b.operands).all(|(a, b)| known(a, b));
+        let crossed = || a.operands.iter().zip(b.operands.iter().rev()).all(|(a, b)| known(a, b));
+        a.kind == b.kind && a.kind.is_operation() && (straight() || a.kind.is_commutative() && crossed())
+    }
+
+    /// A copy of a term for one of its users, if there are others and not too many copies.
+    fn copy(&mut self, term: Place, user: Place) -> Option<Place> {
+        let copy = self.terms.all.len();
+        let original = &mut self.terms.all[term];
+        if copy == self.most_terms || original.users.len() == 1 && !original.is_root {
+            return None;
+        }
+        original.users.retain(|&other| other != user);
+        let copied = Term { users: vec![user], is_root: false, ..original.clone() };
+        for operand in &copied.operands {
+            let users = &mut self.terms.all[operand.term].users;
+            if users.last() != Some(&copy) {
+                users.push(copy);
+            }
+        }
+        let of_user = self.terms.all[user].operands.iter_mut();
+        of_user.filter(|operand| operand.term == term).for_each(|operand| operand.term = copy);
+        self.terms.all.push(copied);
+        self.colours.push(self.colours[term]);
+        self.originals.push(self.originals[term]);
+        self.shift.next.push(None);
+        self.shift.previous.push(None);
+        self.is_open.push(true);
+        Some(copy)
+    }
+
+    /// Puts copies beside their originals: operands come before their users again.
+    fn sorted(self) -> (Terms, Shift) {
+        let mut order: Vec<Place> = (0..self.terms.all.len()).collect();
+        order.sort_by_key(|&place| (self.originals[place], place));
+        let mut places = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(at, &place)| places[place] = at);
+        let moved = |operand: &Operand| Operand { term: places[operand.term], ..*operand };
+        let all = order.iter().map(|&place| {
+            let mut term = self.terms.all[place].clone();
+            term.operands = term.operands.iter().map(moved).collect();
+            term.users.iter_mut().for_each(|user| *user = places[*user]);
+            term
+        });
+        let terms = Terms { all: all.collect(), roots: self.terms.roots.iter().map(moved).collect() };
+        let map = |of: &[Option<Place>]| order.iter().map(|&p| of[p].map(|q| places[q])).collect();
+        let shift = Shift { next: map(&self.shift.next), previous: map(&self.shift.previous) };
+        (terms, shift)
     }
 
     /// Whether terms may correspond as far as is known.
@@ -147,7 +313,7 @@ impl Search<'_> {
 
     fn users(&mut self, one: Place, other: Place, by_colour: bool) {
         // What has another operand that is known.
-        for &user in &self.terms.all[one].users {
+        for user in self.terms.all[one].users.clone() {
             if self.shift.next[user].is_some() {
                 continue;
             }

@@ -52,7 +52,7 @@ pub struct Operand {
     pub is_negative: bool,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Term {
     pub id: ExprId,
     pub kind: Kind,
@@ -64,7 +64,7 @@ pub struct Term {
 }
 
 /// All terms that some roots depend on, operands before their users.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Terms {
     pub all: Vec<Term>,
     pub roots: Vec<Operand>,
@@ -137,8 +137,11 @@ impl Terms {
             }
             _ => node.operands().filter(|o| !absorbed(o)).map(|operand| places[&operand]).collect(),
         };
-        for operand in &operands {
-            self.all[operand.term].users.push(place);
+        for (slot, operand) in operands.iter().enumerate() {
+            // The factors of a square have one user.
+            if !operands[..slot].iter().any(|before| before.term == operand.term) {
+                self.all[operand.term].users.push(place);
+            }
         }
         self.all.push(Term { id, kind, operands, constant, users: Vec::new(), is_root: false });
         place

@@ -1,9 +1,13 @@
 //! Loops against straight-line code, bit for bit.
 
-use super::{Direction, Local, Repeat, Rolled, rolled_from};
+use super::orbits::Orbits;
+use super::shift::{OPERATIONS_A_COPY, Shift, Way};
+use super::terms::Terms;
+use super::{Direction, LEAST_PARTS, Local, Repeat, Rolled, WAYS, rolled_by};
 use crate::Elimination;
+use crate::equations::Argument;
 use crate::expr::evaluate::{evaluate, sample};
-use crate::expr::graph::ExprId;
+use crate::expr::graph::{ExprId, Graph};
 use crate::expr::schedule::Operations;
 use crate::expr::symbol::Symbol;
 use crate::groups::Functions;
@@ -113,28 +117,35 @@ fn local<F: Float>(
 }
 
 /// The elements of the test's arguments.
-fn element(symbol: Symbol) -> Option<(&'static str, usize)> {
+fn element(symbol: Symbol) -> Option<(Argument, usize)> {
     match symbol {
-        Symbol::Coordinate(x) => Some(("x", x)),
-        Symbol::Rate(u) => Some(("u", u)),
+        Symbol::Coordinate(x) => Some((Argument::Joints, x)),
+        Symbol::Rate(u) => Some((Argument::Rows, u)),
         _ => None,
     }
 }
 
-/// Both ways of all kernels that have loops agree, and take the same operations; the operations of the longest texts,
-/// with and without loops.
+/// Both ways of all kernels that have loops agree, and take the same operations but for copies; the operations of the
+/// longest texts, with and without loops.
 fn check(page: &str, wanted: &[Kernel]) -> Vec<(usize, usize)> {
     let model = gyro_model::read("page.toml", page).unwrap_or_else(|error| panic!("{error}\n{page}"));
     let start = model.assemble().expect("a start");
-    let mut equations = crate::equations(&model, (Elimination::NullSpace, &Functions::all()), &start);
+    let mut equations =
+        crate::equations(&model, (Elimination::NullSpace, &Functions::all(), crate::Effort::Full), &start);
     let mut kernels = Kernels::of(&equations);
     kernels.finish(&mut equations.graph, equations.passes);
     let graph = &equations.graph;
     let sizes = wanted.iter().map(|&kernel| {
         let roots = kernels.roots(kernel);
         let straight = Operations::count(graph, roots).total();
-        let Some(rolled) = rolled_from(500, graph, roots, &element) else { return (straight, straight) };
-        assert_eq!(executed(&rolled), Operations::count(graph, roots), "{kernel:?}");
+        let Some(rolled) = rolled_by(&WAYS, 500, (graph, roots), &element) else {
+            return (straight, straight);
+        };
+        let more = rolled.executed().total().checked_sub(straight);
+        assert!(
+            more.is_some_and(|more| OPERATIONS_A_COPY * more <= straight),
+            "{kernel:?}: {more:?} of {straight}"
+        );
         for seed in 0..3 {
             let expected = evaluate(graph, roots, sample(seed));
             assert_eq!(run(&rolled, &sample(seed)), expected, "{kernel:?}, seed {seed}");
@@ -146,19 +157,6 @@ fn check(page: &str, wanted: &[Kernel]) -> Vec<(usize, usize)> {
         (straight, rolled.n_written())
     });
     sizes.collect()
-}
-
-/// Operations as they are executed.
-fn executed(rolled: &Rolled) -> Operations {
-    let mut sum = Operations::count(&rolled.graph, &rolled.outside_roots());
-    for (_, repeat) in &rolled.loops {
-        let body = Operations::count(&repeat.graph, &repeat.values);
-        sum.additions += repeat.count * body.additions;
-        sum.multiplications += repeat.count * body.multiplications;
-        sum.divisions += repeat.count * body.divisions;
-        sum.functions += repeat.count * body.functions;
-    }
-    sum
 }
 
 const WANTED: [Kernel; 3] = [Kernel::JointAccelerations, Kernel::Accelerations, Kernel::SolveVelocities];
@@ -179,4 +177,61 @@ fn links_with_different_constants_compute_the_same() {
 fn limbs_that_are_alike_are_loops() {
     let sizes = check(&page(18, true, None), &WANTED);
     assert!(sizes.iter().all(|(straight, written)| 2 * written < *straight), "{sizes:?}");
+}
+
+const PARTS: usize = 8;
+
+/// Lengths of the orbits of parts that compute these of x and y.
+fn orbits(copies: bool, part: impl Fn(&mut Graph, [ExprId; 2], usize) -> Vec<ExprId>) -> Vec<usize> {
+    let mut graph = Graph::new();
+    let mut roots = Vec::new();
+    for k in 0..PARTS {
+        let of = [Symbol::Coordinate(k), Symbol::Rate(k)].map(|symbol| graph.symbol(symbol));
+        roots.extend(part(&mut graph, of, k));
+    }
+    // Copies are few among other operations.
+    let time = graph.symbol(Symbol::Time);
+    let padding = (0..1000).fold(time, |sum, _| graph.sin(sum));
+    roots.push(padding);
+    let way = Way { n_steps: 2, stride: 1, copies };
+    let (terms, shift) = &Shift::find(&graph, &Terms::of(&graph, &roots), way);
+    Orbits::of(terms, shift, LEAST_PARTS).members.iter().map(Vec::len).filter(|&n| n <= PARTS).collect()
+}
+
+#[test]
+fn squares_are_alike() {
+    let squares = orbits(false, |graph, [x, y], _| {
+        let squares = [x, y].map(|of| graph.mul(of, of));
+        vec![graph.add(squares[0], squares[1])]
+    });
+    assert_eq!(squares, [PARTS; 3]);
+}
+
+#[test]
+fn what_is_alike_corresponds_in_order() {
+    let sums = orbits(false, |graph, [x, y], _| {
+        let one = graph.sin(x);
+        let products = [2, 3].map(|factor| {
+            let factor = graph.integer(factor);
+            graph.mul(factor, one)
+        });
+        products.into_iter().map(|product| graph.mul(product, y)).collect()
+    });
+    assert_eq!(sums, [PARTS; 5]);
+}
+
+#[test]
+fn what_serves_two_terms_in_one_part_alone_is_copied() {
+    let shared = |copies| {
+        orbits(copies, |graph, [x, y], k| {
+            // So far away that the variables look alike.
+            let far = (0..3).fold(x, |x, _| graph.sin(x));
+            let factors = [graph.integer(3), graph.integer(if k == 4 { 3 } else { 5 })];
+            let [one, other] = factors.map(|factor| graph.mul(factor, far));
+            let (sine, tangent) = (graph.sin(one), graph.tanh(other));
+            vec![graph.mul(sine, y), graph.add(tangent, y)]
+        })
+    };
+    assert_eq!(shared(true), [PARTS; 9]);
+    assert_ne!(shared(false), [PARTS; 9]);
 }

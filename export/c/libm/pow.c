@@ -221,7 +221,3 @@ static double libm_pow(double x, double y)
     else SET_HIGH_WORD(z,j);
     return s*z;
 }
-
-#if (LDBL_MANT_DIG == 53)
-openlibm_weak_reference(pow, powl);
-#endif

@@ -102,7 +102,7 @@ impl Variable {
 }
 
 /// Name and unit of each number of the joint state, as the table of a run names them.
-fn states(model: &Model, module: &Module) -> Vec<(String, String)> {
+pub(crate) fn states(model: &Model, module: &Module) -> Vec<(String, String)> {
     const EULER: [&str; 4] = ["e0", "e1", "e2", "e3"];
     const AXES: [&str; 3] = ["x", "y", "z"];
     let of_place = |kind: &str, place: usize| {

@@ -1,5 +1,8 @@
 //! What a mechanism is made of, as data.
 
+#[cfg(feature = "wire")]
+use crate::wire::*;
+
 /// Names, rows and sizes of a mechanism.
 ///
 /// Generated mechanisms have it as a constant, so that a program keeps of it only what it reads.
@@ -91,7 +94,7 @@ pub struct RowInfo {
 
 /// The owner of a constraint row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", derive(SerBin, DeBin))]
 pub enum Owner {
     /// A body's own constraint, by the index of the body.
     Body(u16),

@@ -1,6 +1,8 @@
 //! Joint coordinates.
 
 use super::{Mechanism, Storage};
+#[cfg(feature = "wire")]
+use crate::wire::*;
 
 /// A mechanism in joint coordinates, with the maps to and from maximal coordinates.
 ///
@@ -97,7 +99,7 @@ pub struct JointLayout<'a> {
 
 /// Some coordinates and their rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", derive(SerBin, DeBin))]
 pub enum JointPlace {
     /// An angle or a displacement. One number in x, one in u.
     Scalar {

@@ -2,8 +2,8 @@
 //! Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I* (2nd ed. 1993), section II.5 and appendix;
 //! coefficients as in their code DOP853.
 
-use super::{Method, Work, combine, rate, sum_at};
-use crate::{Ode, Real, Scalar, System};
+use super::{Embedded, Method, Work, combine, rate, sum_at, take_over};
+use crate::{Lanes, Ode, Real, Scalar, System};
 
 /// Work space of the method.
 #[derive(Clone, Debug)]
@@ -219,29 +219,48 @@ impl<D: Ode<M>, M> Method<D, M> for Dop853<D::State, D::Scalar> {
         self.rate
     }
 
-    /// The estimates of orders 5 and 3 together, `h e₅² / √(e₅² + e₃²/100)`: asymptotically of order 8.
-    #[rustfmt::skip]
     fn error(&self, h: D::Scalar, weights: &D::State) -> (D::Scalar, usize)
     where
         D::Scalar: Real,
     {
+        <Self as Embedded<D, M>>::size(h, weights, |i| Embedded::<D, M>::estimates(self, h, i))
+    }
+}
+
+impl<D: Ode<M>, M> Embedded<D, M> for Dop853<D::State, D::Scalar> {
+    #[rustfmt::skip]
+    #[inline(always)]
+    fn estimates(&self, _: D::Scalar, i: usize) -> [D::Scalar; 2] {
         let k = &self.k;
-        let fifth = |i| sum_at([
+        let fifth = sum_at([
             (0.013_120_044_994_194_88, &k[0]), (-1.225_156_446_376_204_4, &k[5]),
             (-0.495_758_949_657_250_2, &k[6]), (1.664_377_182_454_986_4, &k[7]),
             (-0.350_328_848_749_973_66, &k[8]), (0.334_179_118_713_017_5, &k[9]),
             (0.081_923_206_485_115_71, &k[10]), (-0.022_355_307_863_886_294, &k[11]),
         ], i);
-        let third = |i| sum_at([
+        let third = sum_at([
             (-0.189_800_754_072_407_62, &k[0]), (4.450_312_892_752_409, &k[5]),
             (1.891_517_899_314_500_3, &k[6]), (-5.801_203_960_010_585, &k[7]),
             (-0.422_682_321_323_791_97, &k[8]), (-0.152_160_949_662_516_1, &k[9]),
             (0.201_365_400_804_030_34, &k[10]), (0.022_651_792_198_360_825, &k[11]),
         ], i);
+        [fifth, third]
+    }
+
+    /// The estimates of orders 5 and 3 together, `h e₅² / √(e₅² + e₃²/100)`: asymptotically of order 8.
+    #[inline(always)]
+    fn size(
+        h: D::Scalar,
+        weights: &D::State,
+        estimates: impl Fn(usize) -> [D::Scalar; 2],
+    ) -> (D::Scalar, usize)
+    where
+        D::Scalar: Real,
+    {
         let zero = D::Scalar::constant(0.0);
         let (mut five, mut three, mut n, mut worst) = (zero, zero, 0.0, (zero, 0));
         for (i, weight) in weights.as_ref().iter().enumerate() {
-            let (e5, e3) = (fifth(i) / *weight, third(i) / *weight);
+            let [e5, e3] = estimates(i).map(|e| e / *weight);
             if !(e5.is_finite() && e3.is_finite()) {
                 return (D::Scalar::constant(f64::INFINITY), i);
             }
@@ -254,5 +273,32 @@ impl<D: Ode<M>, M> Method<D, M> for Dop853<D::State, D::Scalar> {
         let both = (five + three * D::Scalar::constant(0.01)) * D::Scalar::constant(n);
         let size = if both > zero { h * (five / both.sqrt()) } else { zero };
         (size, worst.1)
+    }
+
+    fn renew(
+        &mut self,
+        system: System<'_, D, M>,
+        t: D::Scalar,
+        y: &D::State,
+        carried: <D::Scalar as Lanes>::Mask,
+        begun: Option<<D::Scalar as Lanes>::Mask>,
+    ) where
+        D::Scalar: Lanes,
+    {
+        let [first, second, ..] = &mut self.k;
+        system.derivative(t, y, second);
+        take_over(carried, first, second);
+        if let Some(begun) = begun {
+            take_over(begun, first, second);
+            let zero = D::Scalar::constant(0.0);
+            self.rate = self.rate.map(|rate| D::Scalar::select(begun, zero, rate));
+        }
+        // The twelfth slope of the last attempt belongs to the same time.
+        let [slopes, states] = rate([&self.k[0], &self.k[11]], [y, &self.stage]);
+        let [slopes_before, states_before] = self.rate;
+        self.rate = [
+            D::Scalar::select(carried, slopes, slopes_before),
+            D::Scalar::select(carried, states, states_before),
+        ];
     }
 }

@@ -17,6 +17,8 @@ mod rk4;
 mod rodas4;
 mod tsit5;
 
+#[cfg(feature = "wire")]
+use crate::wire::*;
 pub use dop853::Dop853;
 pub use kutta4::Kutta4;
 pub use rk4::Rk4;
@@ -24,7 +26,7 @@ pub use rodas4::Rodas4;
 pub use tsit5::Tsit5;
 
 use crate::contract::Storage;
-use crate::{Ode, Real, Scalar, System};
+use crate::{Lanes, Ode, Real, Scalar, System};
 
 /// A one-step method: a step of a given length from a given state, and the states within it.
 ///
@@ -80,9 +82,44 @@ pub trait Method<D: Ode<M>, M = ()> {
     }
 }
 
+/// An explicit method with error estimates, which can be attempted in the lanes of packs: what has to be decided lane
+/// by lane is apart from what is computed in all.
+pub trait Embedded<D: Ode<M>, M = ()>: Method<D, M> {
+    /// What the error of an element of the state is estimated from.
+    fn estimates(&self, h: D::Scalar, element: usize) -> [D::Scalar; 2];
+    /// [`Method::error`] of these estimates.
+    fn size(
+        h: D::Scalar,
+        weights: &D::State,
+        estimates: impl Fn(usize) -> [D::Scalar; 2],
+    ) -> (D::Scalar, usize)
+    where
+        D::Scalar: Real;
+    /// Makes the slopes at `t` and `y` those of the next attempts, which all resume: in lanes that were carried `y` is
+    /// the end of the last attempt, in those that begin it is another state, and in others the last attempt is
+    /// repeated.
+    fn renew(
+        &mut self,
+        system: System<'_, D, M>,
+        t: D::Scalar,
+        y: &D::State,
+        carried: <D::Scalar as Lanes>::Mask,
+        begun: Option<<D::Scalar as Lanes>::Mask>,
+    ) where
+        D::Scalar: Lanes;
+}
+
+/// Takes over elements in these lanes.
+#[inline(always)]
+fn take_over<T: Lanes, S: Storage<T>>(lanes: T::Mask, to: &mut S, from: &S) {
+    for (to, from) in to.as_mut().iter_mut().zip(from.as_ref()) {
+        *to = T::select(lanes, *from, *to);
+    }
+}
+
 /// The cost of the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", derive(SerBin, DeBin))]
 pub struct Work {
     /// Evaluations of the right-hand side.
     pub evaluations: u64,
@@ -118,7 +155,7 @@ fn sum<T: Scalar, const N: usize>(terms: &[(T, &[T]); N], i: usize) -> T {
 
 /// The root mean square of the elements' errors over their weights, and the index of the largest.
 #[inline(always)]
-fn size<T: Real, S: Storage<T>>(weights: &S, error: impl Fn(usize) -> T) -> (T, usize) {
+fn root_mean_square<T: Real, S: Storage<T>>(weights: &S, error: impl Fn(usize) -> T) -> (T, usize) {
     let (mut sum, mut n, mut worst) = (T::constant(0.0), 0.0, (T::constant(0.0), 0));
     for (i, weight) in weights.as_ref().iter().enumerate() {
         let error = (error(i) / *weight).abs();

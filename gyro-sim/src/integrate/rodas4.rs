@@ -4,7 +4,7 @@
 //!
 //! Each step takes one Jacobian, one factorisation of `I/(γh) − ∂f/∂y` and six solves, and iterates nothing.
 
-use super::{Method, Work, combine, lu, size, sum_at};
+use super::{Method, Work, combine, lu, root_mean_square, sum_at};
 use crate::contract::Storage;
 use crate::{Jacobian, Real, Scalar, System};
 
@@ -186,6 +186,6 @@ where
         D::Scalar: Real,
     {
         let error = self.u[5].as_ref();
-        size(weights, |i| error[i])
+        root_mean_square(weights, |i| error[i])
     }
 }

@@ -2,8 +2,8 @@
 //! simplifying assumption*, Computers & Mathematics with Applications 62 (2011), 770–775, with its interpolant of order
 //! 4.
 
-use super::{Method, Work, combine, rate, size, sum_at};
-use crate::{Ode, Real, Scalar, System};
+use super::{Embedded, Method, Work, combine, rate, root_mean_square, sum_at, take_over};
+use crate::{Lanes, Ode, Real, Scalar, System};
 
 /// Work space of the method.
 #[derive(Clone, Debug)]
@@ -114,17 +114,55 @@ impl<D: Ode<M>, M> Method<D, M> for Tsit5<D::State> {
         rate([&self.k[6], &self.k[5]], [&self.end, &self.stage])
     }
 
-    #[rustfmt::skip]
     #[inline(always)]
     fn error(&self, h: D::Scalar, weights: &D::State) -> (D::Scalar, usize)
     where
         D::Scalar: Real,
     {
+        <Self as Embedded<D, M>>::size(h, weights, |i| Embedded::<D, M>::estimates(self, h, i))
+    }
+}
+
+impl<D: Ode<M>, M> Embedded<D, M> for Tsit5<D::State> {
+    #[rustfmt::skip]
+    #[inline(always)]
+    fn estimates(&self, h: D::Scalar, i: usize) -> [D::Scalar; 2] {
         let k = &self.k;
-        size(weights, |i| h * sum_at([
+        let error = h * sum_at([
             (-0.001_780_011_052_225_771_4, &k[0]), (-0.000_816_434_459_656_746_9, &k[1]), (0.007_880_878_010_261_995, &k[2]),
             (-0.144_711_007_173_262_9, &k[3]), (0.582_357_165_452_555_2, &k[4]), (-0.458_082_105_929_186_95, &k[5]),
             (1.0 / 66.0, &k[6]),
-        ], i))
+        ], i);
+        [error, D::Scalar::constant(0.0)]
+    }
+
+    #[inline(always)]
+    fn size(
+        _: D::Scalar,
+        weights: &D::State,
+        estimates: impl Fn(usize) -> [D::Scalar; 2],
+    ) -> (D::Scalar, usize)
+    where
+        D::Scalar: Real,
+    {
+        root_mean_square(weights, |i| estimates(i)[0])
+    }
+
+    fn renew(
+        &mut self,
+        system: System<'_, D, M>,
+        t: D::Scalar,
+        y: &D::State,
+        carried: <D::Scalar as Lanes>::Mask,
+        begun: Option<<D::Scalar as Lanes>::Mask>,
+    ) where
+        D::Scalar: Lanes,
+    {
+        let [first, second, .., last] = &mut self.k;
+        take_over(carried, first, last);
+        if let Some(begun) = begun {
+            system.derivative(t, y, second);
+            take_over(begun, first, second);
+        }
     }
 }

@@ -1,19 +1,20 @@
-//! SIMD lanes: one call advances four or eight scenarios (feature `lanes`).
+//! SIMD lanes: one call advances two, four or eight scenarios (feature `lanes`).
 //!
-//! A generated mechanism takes any [`Scalar`](crate::Scalar), so it takes a pack of lanes: `wide`'s [`f64x4`],
-//! [`f64x8`] and [`f32x8`] are scalars here. Each lane has a state of its own, and parameters of its own, because a
-//! mechanism's parameters are fields of the scalar's type. Kernels are straight-line; what a solver decides, it
-//! decides lane by lane.
+//! A generated mechanism takes any [`Scalar`](crate::Scalar), so it takes a pack of lanes: `wide`'s [`f64x2`],
+//! [`f64x4`], [`f64x8`] and [`f32x8`] are scalars here. Each lane has a state of its own, and parameters of its own,
+//! because a mechanism's parameters are fields of the scalar's type. Kernels are straight-line; what a solver decides,
+//! it decides lane by lane.
 //!
 //! * In joint coordinates [`Rk4`](crate::Rk4) takes lanes as it is; [`Direct`] watches the lanes besides.
+//! * Under error control, without corrections, [`Adaptive`] has lanes with times and steps of their own.
 //! * In maximal coordinates [`Partitioned`] corrects without branches: each lane is on charts of its own, and lanes
 //!   that have converged are masked until all have.
 //!
 //! # Lanes against scalar runs
-//! Each lane computes, *bit for bit*, what a run with its numbers alone computes in `f64` or `f32`. Sine and cosine are
-//! libm's, operation by operation (see `lanes/sine.rs`), and so are square roots; hyperbolic tangents, arc tangents and
-//! tables are left to libm, lane after lane, which is exact and slow. A lane that fails keeps the state in which it
-//! failed, and its error; it does not disturb the others.
+//! Each lane computes, *bit for bit*, what a run with its numbers alone computes in `f64` or `f32`. Sine and cosine of
+//! `f64` are libm's, operation by operation (see `lanes/sine.rs`), and so are square roots; hyperbolic tangents, arc
+//! tangents and tables are left to libm, lane after lane, which is exact and slow. A lane that fails keeps the state in
+//! which it failed, and its error; it does not disturb the others.
 //!
 //! # Speed
 //! Packs gain only where the target has registers for them: `-C target-cpu=native`, or x86-64-v3 and v4.
@@ -38,15 +39,17 @@
 //! assert!(precession(7) > precession(0));
 //! ```
 
+mod adaptive;
 mod chart;
 mod failures;
 mod packs;
 mod partition;
 mod sine;
 
+pub use adaptive::{Adaptive, Outcome};
 pub use failures::{Failures, MAX_LANES};
 pub use partition::{Direct, Partitioned};
-pub use wide::{f32x8, f64x4, f64x8};
+pub use wide::{f32x8, f64x2, f64x4, f64x8};
 
 pub use crate::Lanes;
 

@@ -3,7 +3,7 @@
 use super::{chart, sine};
 use crate::fused::IS_FUSED;
 use crate::{Lanes, Scalar};
-use wide::{f32x8, f64x4, f64x8};
+use wide::{f32x8, f64x2, f64x4, f64x8};
 
 /// A function that is left to libm, lane after lane.
 fn each<T: Lanes>(x: T, function: impl Fn(T::Lane) -> T::Lane) -> T {
@@ -42,6 +42,9 @@ macro_rules! pack {
             fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
                 let lanes = self.to_array().map(|t| Scalar::spline(t, knots, pieces));
                 [0, 1, 2].map(|order| Self::from_lanes(|lane| lanes[lane][order]))
+            }
+            fn spline_third(self, knots: &[f64], pieces: &[[f64; 4]]) -> Self {
+                each(self, |t| Scalar::spline_third(t, knots, pieces))
             }
         }
 
@@ -97,6 +100,7 @@ macro_rules! pack {
     };
 }
 
+pack!(f64x2, f64, 2, sine::sin, sine::cos);
 pack!(f64x4, f64, 4, sine::sin, sine::cos);
 pack!(f64x8, f64, 8, sine::sin, sine::cos);
 pack!(f32x8, f32, 8, sine::sin_of_singles, sine::cos_of_singles);

@@ -1,18 +1,18 @@
-//! Sine and cosine of all lanes at once, bit for bit those of libm.
+//! Sine and cosine of all lanes at once, bit for bit those of a single number: of `f32` as everywhere
+//! ([`sine`](crate::sine)), of `f64` libm's.
 //!
-//! The method is FDLIBM's (Sun Microsystems 1993: `k_sin.c`, `k_cos.c`, `e_rem_pio2.c`; for `f32` FreeBSD's `k_sinf.c`,
-//! `k_cosf.c`, `e_rem_pio2f.c`): from the argument a multiple of π/2 is subtracted, and a polynomial serves on [−π/4,
-//! π/4]. FDLIBM branches on the argument; here every lane goes the way of most arguments, with the same operations in
-//! the same order, and libm does again the few lanes whose argument is *hard*: large, close to a multiple of π/2 other
-//! than zero, where libm subtracts in more parts, or close to an odd multiple of π/4, where it tells the quadrant by
-//! other means. So errors are libm's: below one unit in the last place.
+//! libm's method is FDLIBM's (Sun Microsystems 1993: `k_sin.c`, `k_cos.c`, `e_rem_pio2.c`): from the argument a
+//! multiple of π/2 is subtracted, and a polynomial serves on [−π/4, π/4]. FDLIBM branches on the argument; here every
+//! lane goes the way of most arguments, with the same operations in the same order, and libm does again the few lanes
+//! whose argument is *hard*: large, close to a multiple of π/2 other than zero, where libm subtracts in more parts, or
+//! close to an odd multiple of π/4, where it tells the quadrant by other means. So errors are libm's: below one unit in
+//! the last place.
 //!
 //! All of it is inlined, so that the compiler reduces an argument once where a kernel takes its sine and its cosine.
 
 use super::{Lanes, MAX_LANES};
-use crate::Real;
-use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
-use wide::{f32x8, f64x8};
+use crate::{Real, sine};
+use core::f64::consts::FRAC_2_PI;
 
 /// 1.5 · 2⁵²: a number of moderate size that is added to it is rounded to an integer.
 const ROUNDING: f64 = 6_755_399_441_055_744.0;
@@ -189,95 +189,20 @@ fn cosine_of_double<V: Lanes>(x: V, rest: V) -> V {
     w + (((V::constant(1.0) - w) - half) + (z * r - x * rest))
 }
 
-/// Below 2⁻¹² the sine is its argument, −0 too.
-const TINY_SINGLE: f64 = 0.000_244_140_625;
-
-/// Sine in single precision, evaluated in double precision.
+/// Sine in single precision.
 #[inline(always)]
-pub(super) fn sin_of_singles(x: f32x8) -> f32x8 {
-    let wide = widened(x);
-    let is_tiny = f64x8::splat(TINY_SINGLE).greater(Lanes::absolute(wide));
-    if is_small(wide) {
-        return narrowed(Lanes::select(is_tiny, wide, sine_of_single(wide)));
-    }
-    let (reduced, sine, cosine) = singles(wide);
-    let found = Lanes::select(is_tiny, wide, reduced.sine(sine, cosine));
-    unless_hard(f64x8::bits(reduced.is_hard), x, narrowed(found), libm::sinf)
+pub(super) fn sin_of_singles<V: Lanes<Lane = f32>>(x: V) -> V {
+    unless_hard(large_singles(x), x, sine::sin(x), libm::sinf)
 }
 
-/// Cosine in single precision, evaluated in double precision.
+/// Cosine in single precision.
 #[inline(always)]
-pub(super) fn cos_of_singles(x: f32x8) -> f32x8 {
-    let wide = widened(x);
-    if is_small(wide) {
-        return narrowed(cosine_of_single(wide));
-    }
-    let (reduced, sine, cosine) = singles(wide);
-    unless_hard(f64x8::bits(reduced.is_hard), x, narrowed(reduced.cosine(sine, cosine)), libm::cosf)
+pub(super) fn cos_of_singles<V: Lanes<Lane = f32>>(x: V) -> V {
+    unless_hard(large_singles(x), x, sine::cos(x), libm::cosf)
 }
 
+/// The lanes that are reduced elsewhere, those that are no numbers too.
 #[inline(always)]
-fn widened(x: f32x8) -> f64x8 {
-    f64x8::new(x.to_array().map(f64::from))
-}
-
-#[inline(always)]
-#[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is what is meant")]
-fn narrowed(x: f64x8) -> f32x8 {
-    f32x8::new(x.to_array().map(|x| x as f32))
-}
-
-/// Two parts of π/2, the first one of 25 bits.
-const PART_OF_SINGLES: [f64; 2] = [1.570_796_310_901_641_8, 1.589_325_477_352_819_6e-8];
-
-/// The `f32` below 9π/4: up to here libm subtracts multiples of π/2 in one part.
-const NEAR: f64 = 7.068_583_011_627_197;
-
-/// Arguments below 2²⁸ π/2 are reduced in two parts.
-const LARGE_SINGLE: f64 = 4.2e8;
-
-/// The reduced arguments, their sines and cosines, for `f32`.
-#[inline(always)]
-fn singles<V: Lanes<Lane = f64>>(x: V) -> (Reduced<V>, V, V) {
-    let (n, quadrant) = quadrant(x);
-    let in_one = x - n * V::constant(FRAC_PI_2);
-    let [first, second] = PART_OF_SINGLES.map(V::constant);
-    let in_two = x - n * first - n * second;
-    let size = x.absolute();
-    let y = V::select(size.greater(V::constant(NEAR)), in_two, in_one);
-    let is_hard = size.greater(V::constant(LARGE_SINGLE)) | y.absolute().greater(V::constant(EDGE));
-    (Reduced { quadrant, is_hard }, sine_of_single(y), cosine_of_single(y))
-}
-
-/// `k_sinf.c`.
-#[inline(always)]
-fn sine_of_single<V: Lanes>(x: V) -> V {
-    let [s1, s2, s3, s4] = [
-        -0.166_666_666_416_265_24,
-        0.008_333_329_385_889_463,
-        -0.000_198_393_348_360_966_32,
-        2.718_311_493_989_822e-6,
-    ]
-    .map(V::constant);
-    let z = x * x;
-    let w = z * z;
-    let r = s3 + z * s4;
-    let s = z * x;
-    (x + s * (s1 + z * s2)) + s * w * r
-}
-
-/// `k_cosf.c`.
-#[inline(always)]
-fn cosine_of_single<V: Lanes>(x: V) -> V {
-    let [c0, c1, c2, c3] = [
-        -0.499_999_997_251_031,
-        0.041_666_623_323_739_06,
-        -0.001_388_676_377_460_993,
-        2.439_044_879_627_741e-5,
-    ]
-    .map(V::constant);
-    let z = x * x;
-    let w = z * z;
-    let r = c2 + z * c3;
-    ((V::constant(1.0) + z * c0) + w * c1) + (w * z) * r
+fn large_singles<V: Lanes<Lane = f32>>(x: V) -> u32 {
+    V::bits(!x.absolute().at_most(V::constant(sine::LARGEST)))
 }

@@ -1,7 +1,12 @@
 //! Lanes against their scalars, bit for bit.
 
-use super::{Lanes, f32x8, f64x4, f64x8};
-use crate::Scalar;
+extern crate std;
+
+use super::{Adaptive, Lanes, Outcome, f32x8, f64x2, f64x4, f64x8};
+use crate::integrate::{Embedded, Method};
+use crate::{Control, Dop853, Error, Ode, Scalar, Solver, Tsit5};
+use std::vec;
+use std::vec::Vec;
 
 /// Steps of a walk through all exponents, chosen odd so that mantissas are irregular.
 const WALK: u64 = 0x0000_7fff_1234_567b;
@@ -54,8 +59,14 @@ fn sines_and_cosines_are_those_of_libm() {
     check::<f64x8>(arguments(), (Scalar::cos, libm::cos));
     check::<f64x4>(arguments(), (Scalar::sin, libm::sin));
     check::<f64x4>(arguments(), (Scalar::cos, libm::cos));
-    check::<f32x8>(arguments(), (Scalar::sin, libm::sinf));
-    check::<f32x8>(arguments(), (Scalar::cos, libm::cosf));
+    check::<f64x2>(arguments(), (Scalar::sin, libm::sin));
+    check::<f64x2>(arguments(), (Scalar::cos, libm::cos));
+}
+
+#[test]
+fn sines_and_cosines_in_single_precision_are_those_of_one_number() {
+    check::<f32x8>(arguments(), (Scalar::sin, Scalar::sin));
+    check::<f32x8>(arguments(), (Scalar::cos, Scalar::cos));
 }
 
 #[test]
@@ -81,4 +92,128 @@ fn masks_are_bits() {
         let chosen = Lanes::select(mask, f64x8::splat(1.0), f64x8::splat(2.0));
         assert!((0..8).all(|lane| (chosen.lane(lane) == 1.0) == (bits >> lane & 1 == 1)));
     }
+}
+
+/// `y₀' = −λ (y₀ − cos t)`, `y₁' = y₀ y₁`, which is stiff for large λ and knows the time.
+struct Follower<T>(T);
+
+#[derive(Clone, Copy)]
+struct Equations;
+
+impl<T: Scalar> Ode<Follower<T>> for Equations {
+    type Scalar = T;
+    type State = [T; 2];
+    fn derivative(&self, follower: &Follower<T>, t: T, y: &[T; 2], dy: &mut [T; 2]) {
+        *dy = [-follower.0 * (y[0] - t.cos()), y[0] * y[1]];
+    }
+}
+
+/// What a motion comes to: its states at these times, up to its error.
+type Motion = (Vec<[f64; 2]>, Option<Error>);
+
+fn alone<A: Method<Equations, Follower<f64>>>(
+    method: A,
+    (rate, control): (f64, Control),
+    times: &[f64],
+) -> Motion {
+    let follower = Follower(rate);
+    let mut solver = Solver::new(Equations, method, 0.0, &[0.0, 1.0]).with_control(control);
+    let (mut states, mut state) = (Vec::new(), [0.0; 2]);
+    let mut run = || {
+        for t in times {
+            while solver.time() < *t {
+                solver.step_towards(&follower, times[times.len() - 1])?;
+            }
+            solver.interpolate(&follower, *t, &mut state)?;
+            states.push(state);
+        }
+        Ok(())
+    };
+    let error = run().err();
+    (states, error)
+}
+
+/// The motions one after the other in whatever lane is free.
+fn in_lanes<A, B>(method: A, motions: &[(f64, Control)], times: &[f64]) -> Vec<Motion>
+where
+    A: Embedded<Equations, Follower<f64x4>>,
+    B: Embedded<Equations, Follower<f64>>,
+{
+    let mut packs =
+        Adaptive::<_, _, f64x4, A, _, [f64; 2], B>::new(Equations, method, &[f64x4::splat(0.0); 2]);
+    let mut found: Vec<Motion> = vec![(Vec::new(), None); motions.len()];
+    let mut running = [None; 4];
+    let (mut next, mut ended) = (0, 0);
+    while ended < motions.len() {
+        for (lane, running) in running.iter_mut().enumerate() {
+            if running.is_none() && next < motions.len() {
+                packs.begin(lane, Equations, &[0.0, 1.0], motions[next].1);
+                *running = Some(next);
+                next += 1;
+            }
+        }
+        let rate = |lane: usize| running[lane].map_or(1.0, |motion: usize| motions[motion].0);
+        let all = Follower(f64x4::from_lanes(rate));
+        let systems: [_; 4] = core::array::from_fn(|lane| Follower(rate(lane)));
+        let mut outcomes = [None; 4];
+        packs.attempt(
+            |lane| &systems[lane],
+            &all,
+            times[times.len() - 1],
+            |lane, outcome| {
+                outcomes[lane] = Some(outcome);
+            },
+        );
+        loop {
+            let due: [_; 4] = core::array::from_fn(|lane| {
+                let t = *times.get(found[running[lane]?].0.len())?;
+                (outcomes[lane] == Some(Outcome::Kept) && packs.time(lane)? >= t).then_some(t)
+            });
+            if due == [None; 4] {
+                break;
+            }
+            let mut out = [f64x4::splat(0.0); 2];
+            packs.interpolate(&all, |lane| due[lane], &mut out);
+            for lane in (0..4).filter(|lane| due[*lane].is_some()) {
+                found[running[lane].unwrap()].0.push(out.map(|x| x.lane(lane)));
+            }
+        }
+        for (lane, running) in running.iter_mut().enumerate() {
+            let Some(motion) = *running else { continue };
+            if let Some(Outcome::Failed(error)) = outcomes[lane] {
+                found[motion].1 = Some(error);
+            } else if found[motion].0.len() < times.len() {
+                continue;
+            }
+            packs.end(lane);
+            *running = None;
+            ended += 1;
+        }
+    }
+    found
+}
+
+/// Gentle, stiff and hopeless motions, of many tolerances and budgets.
+#[test]
+fn steps_of_each_lane_are_those_of_its_motion_alone() {
+    let times: Vec<f64> = (1..40).map(|k| 0.01 * f64::from(k * k)).collect();
+    let motion = |k: i32| {
+        let rate = 10f64.powf(f64::from(k * 37 % 100) * 0.06 - 1.0);
+        let control = Control::default().with_tolerance(10f64.powi(-3 - k % 9));
+        (rate, Control { budget: 30 * (1 + u64::from(k.unsigned_abs() % 31)), ..control })
+    };
+    let motions: Vec<_> = (0..100).map(motion).collect();
+    let tsit5 = in_lanes::<_, Tsit5<[f64; 2]>>(Tsit5::new(&[f64x4::splat(0.0); 2]), &motions, &times);
+    let dop853 = in_lanes::<_, Dop853<[f64; 2], f64>>(Dop853::new(&[f64x4::splat(0.0); 2]), &motions, &times);
+    let [mut ended, mut stiff, mut lengthy] = [0; 3];
+    for (k, motion) in motions.iter().enumerate() {
+        assert_eq!(tsit5[k], alone(Tsit5::new(&[0.0; 2]), *motion, &times), "{k}, {motion:?}");
+        assert_eq!(dop853[k], alone(Dop853::new(&[0.0; 2]), *motion, &times), "{k}, {motion:?}");
+        for (_, error) in [&tsit5[k], &dop853[k]] {
+            ended += i32::from(error.is_none());
+            stiff += i32::from(matches!(error, Some(Error::Stiff { .. })));
+            lengthy += i32::from(matches!(error, Some(Error::TooManySteps { .. })));
+        }
+    }
+    assert!(ended > 20 && stiff > 20 && lengthy > 5, "{ended} {stiff} {lengthy}");
 }

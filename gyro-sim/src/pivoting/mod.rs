@@ -42,11 +42,13 @@
 //! velocities and each look at the choice; 8 `NC` (`NQ` + 1) bytes of stack in double precision.
 
 mod elimination;
+mod extent;
 #[cfg(test)]
 mod four_bar;
 mod nearness;
 mod rounding;
 
+pub use extent::{Extent, Fixed};
 pub use rounding::is_met;
 pub(crate) use rounding::silence;
 
@@ -57,10 +59,14 @@ use crate::{Clearance, Error, Kinematics, Mechanism, Owner, Real, Scalar};
 use elimination::Elimination;
 
 /// Which `NC` of the `NQ` coordinates are dependent.
+pub type Pivots<const NC: usize, const NQ: usize> = Choice<Fixed<NC, NQ>>;
+
+/// Which coordinates are dependent: as many as there are constraints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pivots<const NC: usize, const NQ: usize> {
+pub struct Choice<E: Extent> {
+    extent: E,
     /// The dependent coordinates, ascending, then the independent ones, ascending.
-    columns: [u16; NQ],
+    columns: E::Columns,
 }
 
 /// An independent coordinate is exchanged once a dependent one changes this many times as fast. Every exchange
@@ -99,37 +105,46 @@ const ROUNDINGS: f64 = 16.0;
 /// A pivot below this many roundings counts as zero: entries are of order one.
 const SINGULAR_EPSILONS: f64 = 16.0;
 
-impl<const NC: usize, const NQ: usize> Pivots<NC, NQ> {
+impl<E: Extent> Choice<E> {
     /// The dependent coordinates, ascending: columns of Φ_q, 7 for each body.
     pub fn dependent(&self) -> &[u16] {
-        &self.columns[..NC.min(NQ)]
+        &self.columns.as_ref()[..self.n_dependent()]
     }
 
     /// The independent coordinates, ascending.
     pub fn independent(&self) -> &[u16] {
-        &self.columns[NC.min(NQ)..]
+        &self.columns.as_ref()[self.n_dependent()..]
     }
 
-    fn new(mut columns: [u16; NQ]) -> Self {
-        let (dependent, independent) = columns.split_at_mut(NC.min(NQ));
+    fn new(extent: E, columns: E::Columns) -> Self {
+        let mut choice = Self { extent, columns };
+        let n_dependent = choice.n_dependent();
+        let (dependent, independent) = choice.columns.as_mut().split_at_mut(n_dependent);
         dependent.sort_unstable();
         independent.sort_unstable();
-        Self { columns }
+        choice
+    }
+
+    fn n_dependent(&self) -> usize {
+        self.extent.n_constraints().min(self.extent.n_coordinates())
     }
 }
 
 /// The choice that full pivoting finds at a state.
-pub fn independent<M, const NC: usize, const NQ: usize>(
-    mechanism: &M,
-    t: M::Scalar,
-    y: &M::State,
-) -> Pivots<NC, NQ>
+pub fn independent<M, E: Extent>(mechanism: &M, t: M::Scalar, y: &M::State) -> Choice<E>
 where
     M: Kinematics<Scalar: Real>,
 {
-    let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, core::array::from_fn(|c| c as u16));
-    elimination.reduce(NQ);
-    Pivots::new(elimination.columns)
+    let extent = extent_of::<M, E>(mechanism);
+    let mut elimination = Elimination::of(mechanism, t, y, extent, extent.columns());
+    elimination.reduce(extent.n_coordinates());
+    Choice::new(extent, elimination.columns)
+}
+
+fn extent_of<M: Mechanism, E: Extent>(mechanism: &M) -> E {
+    let description = mechanism.description();
+    let n_bodies = description.bodies.len();
+    E::new(description.rows.len() + n_bodies, 7 * n_bodies)
 }
 
 /// How clear a state is of singular poses: one over the norm of the Jacobian's pseudoinverse, which near a pose is the
@@ -145,8 +160,16 @@ pub fn clearance<M, const NC: usize, const NQ: usize>(
 where
     M: Kinematics<Scalar: Real>,
 {
-    let jacobian = Elimination::<_, NC, NQ>::of(mechanism, t, y, core::array::from_fn(|c| c as u16));
-    let nearest = jacobian.nearness();
+    clearance_in::<M, Fixed<NC, NQ>>(mechanism, t, y)
+}
+
+/// The same with numbers of constraints and coordinates that the mechanism tells.
+pub fn clearance_in<M, E: Extent>(mechanism: &M, t: M::Scalar, y: &M::State) -> Clearance<M::Scalar>
+where
+    M: Kinematics<Scalar: Real>,
+{
+    let extent = extent_of::<M, E>(mechanism);
+    let nearest = Elimination::of(mechanism, t, y, extent, extent.columns()).nearness();
     Clearance { pivot: nearest.value, owner: Some(owner(mechanism, nearest.row)) }
 }
 
@@ -155,26 +178,21 @@ where
 ///
 /// A choice that cannot be solved for at all is replaced by that of [`independent`]. If the
 /// state is not finite, the choice is kept.
-pub fn follow<M, const NC: usize, const NQ: usize>(
-    mechanism: &M,
-    t: M::Scalar,
-    y: &M::State,
-    choice: &mut Pivots<NC, NQ>,
-) -> u32
+pub fn follow<M, E: Extent>(mechanism: &M, t: M::Scalar, y: &M::State, choice: &mut Choice<E>) -> u32
 where
     M: Kinematics<Scalar: Real>,
 {
-    let before = *choice;
-    for _ in 0..NQ {
-        let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, choice.columns);
-        let least = elimination.reduce(NC);
+    let (before, extent) = (choice.clone(), choice.extent);
+    for _ in 0..extent.n_coordinates() {
+        let mut elimination = Elimination::of(mechanism, t, y, extent, choice.columns.clone());
+        let least = elimination.reduce(extent.n_constraints());
         if !is_resolvable(least.value) {
             *choice = independent(mechanism, t, y);
             break;
         }
         let Some((dependent, independent)) = elimination.steepest(M::Scalar::constant(POOR)) else { break };
-        elimination.columns.swap(dependent, independent);
-        *choice = Pivots::new(elimination.columns);
+        elimination.columns.as_mut().swap(dependent, independent);
+        *choice = Choice::new(extent, elimination.columns);
     }
     let is_new = |column: &&u16| before.independent().binary_search(column).is_err();
     choice.independent().iter().filter(is_new).map(|_| 1).sum()
@@ -185,24 +203,26 @@ where
 /// # Errors
 /// [`Error::Singular`] if a pivot vanishes, [`Error::Jump`] if the change is too large beside the smallest pivot for
 /// the solution to be the one nearby: the state is then as it was.
-pub fn newton_step<M, const NC: usize, const NQ: usize>(
+pub fn newton_step<M, E: Extent>(
     mechanism: &M,
     t: M::Scalar,
-    choice: &Pivots<NC, NQ>,
+    choice: &Choice<E>,
     y: &mut M::State,
 ) -> Result<(), Error>
 where
     M: Kinematics<Scalar: Real>,
 {
-    let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, choice.columns);
+    let extent = choice.extent;
+    let mut elimination = Elimination::of(mechanism, t, y, extent, choice.columns.clone());
     let mut phi = mechanism.buffers().constraints;
     mechanism.phi(t, y, &mut phi);
     silence(mechanism, t, y, &mut phi);
     elimination.set_right(mechanism, phi.as_ref());
-    let least = elimination.reduce(NC);
+    let least = elimination.reduce(extent.n_constraints());
     refuse_singular(mechanism, t, least)?;
     let change = elimination.solution();
-    let largest = largest_magnitude(change);
+    let change = change.as_ref().iter().copied();
+    let largest = largest_magnitude(change.clone());
     let limit = least.value * M::Scalar::constant(TRUSTED);
     if largest > limit {
         let owner = constraint_violation(mechanism, phi.as_ref(), |x| x).owner.unwrap_or(Owner::Body(0));
@@ -221,27 +241,28 @@ where
 ///
 /// # Errors
 /// [`Error::Singular`] if a pivot vanishes.
-pub fn solve_velocities<M, const NC: usize, const NQ: usize>(
+pub fn solve_velocities<M, E: Extent>(
     mechanism: &M,
     t: M::Scalar,
-    choice: &Pivots<NC, NQ>,
+    choice: &Choice<E>,
     y: &mut M::State,
 ) -> Result<(), Error>
 where
     M: Kinematics<Scalar: Real>,
 {
-    let mut elimination = Elimination::<_, NC, NQ>::of(mechanism, t, y, choice.columns);
+    let extent = choice.extent;
+    let mut elimination = Elimination::of(mechanism, t, y, extent, choice.columns.clone());
     let mut residual = mechanism.buffers().rows;
     mechanism.velocity_residual(t, y, &mut residual);
     // The normalisations' rates 2 pᵀṗ = pᵀGᵀw' are zero for any w'.
     elimination.set_right(mechanism, residual.as_ref());
-    refuse_singular(mechanism, t, elimination.reduce(NC))?;
+    refuse_singular(mechanism, t, elimination.reduce(extent.n_constraints()))?;
     elimination.leave_noise(fastest(mechanism, y));
-    let mut q_dot = [M::Scalar::constant(0.0); NQ];
-    for (column, change) in elimination.dependent().zip(elimination.solution()) {
-        q_dot[column] = -change;
+    let mut q_dot = extent.line::<M::Scalar>();
+    for (column, change) in elimination.dependent().zip(elimination.solution().as_ref()) {
+        q_dot.as_mut()[column] = -*change;
     }
-    add_velocities(&q_dot, mechanism.size(), y);
+    add_velocities(q_dot.as_ref(), mechanism.size(), y);
     Ok(())
 }
 

@@ -61,7 +61,7 @@ fn a_choice_that_cannot_be_solved_for_is_replaced() {
     // e1 of the crank is zero whatever the motion.
     let mut columns: [u16; NQ] = core::array::from_fn(|c| c as u16);
     columns.swap(4, NQ - 1);
-    let mut choice = Pivots::<NC, NQ>::new(columns);
+    let mut choice = Pivots::<NC, NQ>::new(Fixed, columns);
     assert_eq!(choice.independent(), [4]);
     let refused = bar.newton_step(0.5, &choice, &mut y.clone());
     assert!(matches!(refused, Err(Error::Singular { t: 0.5, owner: Some(_), .. })), "{refused:?}");

@@ -13,6 +13,16 @@ const SAFETY: f64 = 0.9;
 const GROWTH: f64 = 6.0;
 const SHRINKAGE: f64 = 0.2;
 
+/// An attempt of a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Attempt<T> {
+    pub(crate) h: T,
+    /// Whether it would end the run.
+    is_last: bool,
+    /// The time after it, and what rounding takes from it.
+    after: (T, T),
+}
+
 impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
     /// Steps until `t_end`, each as long as the tolerances allow. The method must estimate its error; with another the
     /// program does not compile:
@@ -65,66 +75,96 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         A: Method<D, M>,
         C: Correction<D, M>,
     {
-        const { assert!(A::ERROR_ORDER > 0, "this method has no error estimate: take steps of fixed length") };
-        self.check_control()?;
-        self.check_start()?;
-        check_time(self.t, t_end)?;
-        if t_end <= self.t {
-            return Ok(());
-        }
-        if self.next_step == T::constant(0.0) {
-            self.next_step = self.guess_first_step(system, t_end);
-        }
-        self.watch(system);
-        let mut has_failed = false;
+        self.is_repeated = false;
         loop {
-            if self.approach(system, t_end)? {
+            let Some(attempt) = self.propose(system, t_end)? else { return Ok(()) };
+            self.attempt(system, attempt.h);
+            if self.judge(system, &attempt)? {
                 return Ok(());
             }
-            let (h, is_last) = self.length(t_end);
-            self.check_budget(t_end, h)?;
-            self.attempt(system, h);
-            self.weigh::<M>();
-            let (error, index) = self.method.error(h, &self.weights);
-            let error = error.to_f64();
-            let failure = if error <= 1.0 {
-                let after = if is_last { (t_end, T::constant(0.0)) } else { self.after(h) };
-                self.trial.as_mut().copy_from_slice(self.method.end().as_ref());
-                match self.settle(system, after.0) {
-                    Ok(settled) if let Some(shorter) = self.before_pose(system, h, settled.1) => {
-                        self.statistics.rejected += 1;
-                        let shortest = h * T::constant(SHRINKAGE);
-                        self.next_step = if shorter < shortest { shortest } else { shorter };
-                        has_failed = true;
-                        continue;
-                    }
-                    Ok(settled) => {
-                        self.keep::<M>(after, h, settled);
-                        self.grow::<M>(h, error, has_failed, is_last);
-                        return Ok(());
-                    }
-                    Err(failure) => Some(failure),
-                }
-            } else if error.is_finite() {
-                None
-            } else {
-                Some(Error::NotFinite { t: self.t.to_f64(), index: short(index) })
-            };
-            self.statistics.rejected += 1;
-            if self.approach.is_none() && self.beyond_pose().is_some() {
-                self.approach = Some(Approach::default());
-            }
-            let factor = if failure.is_some() { SHRINKAGE } else { self.factor::<M>(error, 0.0).min(1.0) };
-            self.next_step = h * T::constant(factor);
-            has_failed = true;
-            if self.next_step.to_f64() < self.shortest() {
-                return Err(failure.unwrap_or(Error::StepTooShort {
-                    t: self.t.to_f64(),
-                    step: self.next_step.to_f64(),
-                    index: short(index),
-                }));
-            }
         }
+    }
+
+    /// How long the next attempt is to be; none where no attempt is needed.
+    pub(crate) fn propose<M>(&mut self, system: &M, t_end: T) -> Result<Option<Attempt<T>>, Error>
+    where
+        D: Ode<M, Scalar = T, State = S>,
+        A: Method<D, M>,
+        C: Correction<D, M>,
+    {
+        const { assert!(A::ERROR_ORDER > 0, "this method has no error estimate: take steps of fixed length") };
+        if !self.is_repeated {
+            self.check_control()?;
+            self.check_start()?;
+            check_time(self.t, t_end)?;
+            if t_end <= self.t {
+                return Ok(None);
+            }
+            if self.next_step == T::constant(0.0) {
+                self.next_step = self.guess_first_step(system, t_end);
+            }
+            self.watch(system);
+        }
+        if self.approach(system, t_end)? {
+            return Ok(None);
+        }
+        let (h, is_last) = self.length(t_end);
+        self.check_budget(t_end, h)?;
+        let after = if is_last { (t_end, T::constant(0.0)) } else { self.after(h) };
+        Ok(Some(Attempt { h, is_last, after }))
+    }
+
+    /// Goes on from the end of an attempt, or makes the next one shorter; returns whether it has gone on.
+    pub(crate) fn judge<M>(&mut self, system: &M, attempt: &Attempt<T>) -> Result<bool, Error>
+    where
+        D: Ode<M, Scalar = T, State = S>,
+        A: Method<D, M>,
+        C: Correction<D, M>,
+    {
+        let Attempt { h, is_last, after } = *attempt;
+        self.weigh::<M>();
+        let (error, index) = self.method.error(h, &self.weights);
+        let error = error.to_f64();
+        let failure = if error <= 1.0 {
+            self.trial.as_mut().copy_from_slice(self.method.end().as_ref());
+            match self.settle(system, after.0) {
+                Ok(settled) if let Some(shorter) = self.before_pose(system, h, settled.1) => {
+                    let shortest = h * T::constant(SHRINKAGE);
+                    self.repeat(if shorter < shortest { shortest } else { shorter });
+                    return Ok(false);
+                }
+                Ok(settled) => {
+                    self.keep::<M>(after, h, settled);
+                    self.grow::<M>(h, error, is_last);
+                    return Ok(true);
+                }
+                Err(failure) => Some(failure),
+            }
+        } else if error.is_finite() {
+            None
+        } else {
+            Some(Error::NotFinite { t: self.t.to_f64(), index: short(index) })
+        };
+        if self.approach.is_none() && self.beyond_pose().is_some() {
+            self.approach = Some(Approach::default());
+        }
+        let factor = if failure.is_some() { SHRINKAGE } else { self.factor::<M>(error, 0.0).min(1.0) };
+        self.repeat(h * T::constant(factor));
+        if self.next_step.to_f64() < self.shortest() {
+            return Err(failure.unwrap_or(Error::StepTooShort {
+                t: self.t.to_f64(),
+                step: self.next_step.to_f64(),
+                index: short(index),
+            }));
+        }
+        Ok(false)
+    }
+
+    /// The next attempt is of the same step, with this length.
+    fn repeat(&mut self, h: T) {
+        self.statistics.rejected += 1;
+        self.next_step = h;
+        self.is_repeated = true;
     }
 
     fn check_control(&self) -> Result<(), Error> {
@@ -195,7 +235,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         }
     }
 
-    fn grow<M>(&mut self, h: T, error: f64, has_failed: bool, is_last: bool)
+    fn grow<M>(&mut self, h: T, error: f64, is_last: bool)
     where
         D: Ode<M, Scalar = T, State = S>,
         A: Method<D, M>,
@@ -205,7 +245,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
             statistics.shortest_step = statistics.shortest_step.min(h.to_f64());
         }
         let factor = self.factor::<M>(error, self.last_error);
-        let factor = if has_failed { factor.min(1.0) } else { factor };
+        let factor = if core::mem::take(&mut self.is_repeated) { factor.min(1.0) } else { factor };
         self.last_error = error.max(1e-4);
         let next = h * T::constant(factor);
         // A step that was cut short says little about the next one.

@@ -3,6 +3,8 @@
 use super::Passage;
 use crate::When;
 use crate::integrate::Work;
+#[cfg(feature = "wire")]
+use crate::wire::*;
 
 /// Settings of a solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +49,7 @@ impl Control {
 
 /// Statistics of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", derive(SerBin, DeBin))]
 pub struct Statistics {
     /// Steps that were kept.
     pub accepted: u64,

@@ -10,6 +10,7 @@ use crate::contract::Storage;
 use crate::correct::{check_finite, check_time};
 use crate::integrate::Method;
 use crate::{Correction, Error, Ode, Real, System, Uncorrected, When};
+pub(crate) use adaptive::Attempt;
 pub use control::{Control, Statistics};
 use core::cmp::Ordering;
 use passages::Nearness;
@@ -39,6 +40,8 @@ pub struct Solver<D, S, T, A, C> {
     next_step: T,
     last_error: f64,
     since_correction: u32,
+    /// Whether the next attempt is of the same step as the last one.
+    is_repeated: bool,
     /// Number of steps at the limit of stability, and of others since the last of them.
     stiff: u32,
     not_stiff: u32,
@@ -99,6 +102,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
             next_step: zero,
             last_error: 1e-4,
             since_correction: 0,
+            is_repeated: false,
             stiff: 0,
             not_stiff: 0,
             is_kept: false,
@@ -153,6 +157,11 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
     /// The correction.
     pub fn correction(&self) -> &C {
         &self.correction
+    }
+
+    #[cfg(feature = "lanes")]
+    pub(crate) fn method_mut(&mut self) -> &mut A {
+        &mut self.method
     }
 
     /// Replaces the state, as after an impact or a new measurement.
@@ -306,7 +315,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         (t, step - (t - self.t))
     }
 
-    fn attempt<M>(&mut self, system: &M, h: T)
+    pub(crate) fn attempt<M>(&mut self, system: &M, h: T)
     where
         D: Ode<M, Scalar = T, State = S>,
         A: Method<D, M>,

@@ -8,12 +8,14 @@
 use super::Solver;
 use super::poses::{FLOOR, Watch};
 use crate::contract::Storage;
+#[cfg(feature = "wire")]
+use crate::wire::*;
 use crate::{Clearance, Correction, Ode, Owner, Real};
 
 /// A singular pose that steps of fixed length have passed so near that the way they have gone on in may be another than
 /// the motion's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", derive(SerBin, DeBin))]
 pub struct Passage {
     /// The time of the state nearest to the pose, s.
     pub t: f64,

@@ -255,6 +255,9 @@ fn only_the_last_step_can_be_looked_into() {
     assert!(is_outside(solver.interpolate(&(), 0.15, &mut out)), "{out:?}");
 }
 
+/// The natural spline through (0, 0), (1, 1), (3, 0).
+const TABLE: [[f64; 4]; 2] = [[0.0, 1.25, 0.0, -0.25], [1.0, 0.5, -0.75, 0.125]];
+
 #[test]
 fn dual_numbers_and_symbols_agree() {
     fn sum<T: Scalar>(y: &impl Storage<T>) -> T {
@@ -271,6 +274,9 @@ fn dual_numbers_and_symbols_agree() {
         (x.atan2(c).slopes[0], 2.0 / (4.0 + 0.49)),
         (c.atan2(x).slopes[0], -2.0 / (4.0 + 0.49)),
         (sum(&[x - c, x]).slopes[0], 2.0),
+        // The derivative of a table's second derivative, before a knot and at it.
+        (x.spline(&[0.0, 1.0, 3.0], &TABLE)[2].slopes[0], -1.5),
+        (Dual { value: 1.0, slopes: [2.0] }.spline(&[0.0, 1.0, 3.0], &TABLE)[2].slopes[0], 1.5),
     ] {
         assert!((found - expected).abs() < 1e-15, "{found} {expected}");
     }

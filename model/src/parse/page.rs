@@ -36,7 +36,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let page = Section::open(reader, Owner::Page, "the model file", table, &KEYS);
     format(reader, &page);
     let name = name(reader, &page);
-    let parameters::Tables { parameters, derived, inputs } = parameters::read(reader, &page);
+    let parameters::Tables { parameters, derived, inputs, between } = parameters::read(reader, &page);
     let gravity = page.vector_or(reader, "gravity", [0; 3]);
     let counts_work = page.get("count_work").and_then(|item| item.flag(reader)).unwrap_or(true);
     let functions = functions(reader, &page);
@@ -54,6 +54,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         parameters,
         derived_parameters: derived,
         inputs,
+        between,
         bodies,
         joints,
         couplers,

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use num_traits::One;
 use toml::Spanned;
-use toml::de::{DeString, DeValue};
+use toml::de::{DeString, DeTable, DeValue};
 
 use super::expression;
 use super::names;
@@ -16,10 +16,13 @@ use super::reader::Reader;
 use super::section::{Item, Section, keyword, unfit};
 use crate::diagnostics::Related;
 use crate::validate::{Owner, Place};
-use crate::{DerivedParameter, Parameter, Rational};
+use crate::{Between, DerivedParameter, Parameter, Rational};
 
 /// Fields that a generated mechanism has besides its inputs.
 const OWN_FIELDS: [&str; 2] = ["parameters", "derived"];
+
+const BETWEEN: [(&str, Between); 3] =
+    [("linear", Between::Linear), ("held", Between::Held), ("smooth", Between::Smooth)];
 
 /// Names that were met, with where they stand and in which table.
 type Seen = Vec<(String, Range<usize>, &'static str)>;
@@ -29,6 +32,7 @@ pub(super) struct Tables {
     pub(super) parameters: Vec<Parameter>,
     pub(super) derived: Vec<DerivedParameter>,
     pub(super) inputs: Vec<Parameter>,
+    pub(super) between: Vec<Between>,
 }
 
 /// An entry of a table.
@@ -49,7 +53,8 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Tables {
     let given = self::entries(reader, page, "inputs");
     let inputs = table(reader, &given, &mut seen, ("inputs", Owner::Input));
     reader.inputs = inputs.iter().map(|p| p.name.clone()).collect();
-    Tables { parameters, derived, inputs }
+    let between = given.iter().enumerate().map(|(index, entry)| between(reader, index, *entry)).collect();
+    Tables { parameters, derived, inputs, between }
 }
 
 /// Whether an entry names others, or something that should be one.
@@ -82,7 +87,10 @@ fn table(
             reader.wrong(place, key.span(), own_field(key.get_ref()));
         }
         seen.push((key.get_ref().to_string(), key.span(), title));
-        parameters.push(parameter(reader, place, key, value));
+        parameters.push(match value.get_ref() {
+            DeValue::Table(table) if title == "inputs" => input(reader, place, (key, value), table),
+            _ => parameter(reader, place, key, value),
+        });
     }
     parameters
 }
@@ -118,6 +126,21 @@ fn parameter(
     let name = name(reader, place, (key, value));
     let value = plain_number(reader, Item { place: Place { key: "value", ..place }, value });
     Parameter { name, value: value.unwrap_or_else(Rational::one) }
+}
+
+/// An input with more than its value.
+fn input(reader: &mut Reader<'_>, place: Place, entry: Entry<'_>, table: &DeTable<'_>) -> Parameter {
+    let name = name(reader, place, entry);
+    let section = Section::open(reader, place.owner, "an input", table, &["value", "between"]);
+    let value = section.require(reader, "value", "the input", "value = 0");
+    let value = value.and_then(|item| plain_number(reader, item));
+    Parameter { name, value: value.unwrap_or_else(Rational::one) }
+}
+
+fn between(reader: &mut Reader<'_>, index: usize, (_, value): Entry<'_>) -> Between {
+    let item = value.get_ref().as_table().and_then(|table| table.get("between"));
+    let item = item.map(|value| Item { place: Place { owner: Owner::Input(index), key: "between" }, value });
+    item.and_then(|item| item.choice(reader, ("word", &BETWEEN))).unwrap_or_default()
 }
 
 /// The name of an entry.

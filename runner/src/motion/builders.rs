@@ -245,7 +245,7 @@ pub(super) fn implicit<M, D>(
 ) -> Box<dyn Motion<M>>
 where
     M: Partition<Scalar: Real> + Dynamics + 'static,
-    D: Dynamics<Scalar = Dual<M::Scalar, COLUMNS>> + 'static,
+    D: Dynamics<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
 {
     let method = Rodas4::new(y, vec![M::Scalar::constant(0.0); square(y.as_ref())]);
     let start = duals.start();

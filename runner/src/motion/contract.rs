@@ -1,5 +1,6 @@
 //! What a motion is, and what there is to begin one with.
 
+use super::course::Course;
 use crate::approach::Approach;
 use crate::input::Input;
 use crate::offers::Offers;
@@ -7,6 +8,7 @@ use gyro_sim::{
     CorrectedDynamics, Dynamics, Error, JointLayout, JointPlace, Kinematics, Mechanism, Partition,
     Projection, Real, Statistics,
 };
+use nanoserde::{DeBin, SerBin};
 use std::fmt::Debug;
 
 /// A motion of a mechanism. The mechanism is handed in at each call, so that its inputs can be set in between.
@@ -35,6 +37,11 @@ pub trait Motion<M: Mechanism> {
     fn at(&mut self, mechanism: &M, t: f64, y: &mut M::State) -> Result<(), Error>;
     /// An input of the mechanism has changed.
     fn set_input(&mut self, index: usize, value: f64);
+    /// From time zero on steps under error control end at the knots of a course; equations see its inputs at every
+    /// time, set in this copy of the mechanism.
+    fn follow(&mut self, inputs: Option<M>, course: Course)
+    where
+        M: Sized;
     /// What the steps have cost and met.
     fn statistics(&self) -> Statistics;
     /// How often independent coordinates have been chosen anew.
@@ -94,7 +101,7 @@ pub struct OperatingPoint<'a, S> {
 /// The joint form near a state: `ẋ ≈ f + A δx + B δu` and outputs `z ≈ h + C δx + D δu`, with x the joint coordinates
 /// and rates, u the inputs. Of a mechanism with loops x has the independent ones alone. The work, on which nothing
 /// depends, is left out.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, SerBin, DeBin)]
 pub struct Linear {
     /// Time, s.
     pub t: f64,
@@ -117,7 +124,7 @@ pub struct Linear {
 }
 
 /// An element of a joint state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, SerBin, DeBin)]
 pub enum Element {
     /// A number of x.
     Position {

@@ -1,11 +1,15 @@
 //! The equations that are integrated, and the maximal state as seen through each of them.
 
 use super::contract::COLUMNS;
-use gyro_sim::{ByDuals, Dual, Dynamics, Exact, Joint, JointPlace, JointSpace, Mechanism, Ode, Scalar};
+use gyro_sim::{
+    ByDuals, Dual, Dynamics, Exact, Jacobian, Joint, JointJacobian, JointPlace, JointSpace, Mechanism, Ode,
+    Scalar,
+};
+use std::fmt::Debug;
 
 /// The joint state of a maximal one, its angles nearest to given ones: one number for each coordinate, joint after
 /// joint.
-pub(super) fn joints_near<M: JointSpace>(mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> M::Joints {
+pub fn joints_near<M: JointSpace>(mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> M::Joints {
     let (mut x, joints) = (mechanism.joint_start(), mechanism.description().joints);
     let mut at = 0;
     for place in mechanism.joint_layout().places {
@@ -27,6 +31,22 @@ pub(super) fn joints<M: JointSpace>(mechanism: &M, y: &M::State) -> M::Joints {
     let mut x = mechanism.joint_start();
     mechanism.to_joints(Scalar::constant(0.0), y, &mut x);
     x
+}
+
+/// An input at a time: its index, its value and its slope.
+pub(super) type Moving<T> = (usize, [T; 2]);
+
+/// Equations with a Jacobian for inputs that move.
+pub(super) trait MovingInputs<M: Mechanism>: Lens<M> + Jacobian<M> {
+    /// Writes ∂f/∂y, and ∂f/∂t of which the inputs, set to their values, are a part.
+    fn moving_jacobian(
+        &self,
+        mechanism: &M,
+        inputs: &[Moving<M::Scalar>],
+        at: (M::Scalar, &Self::State),
+        dfdy: &mut Self::Matrix,
+        dfdt: &mut Self::State,
+    );
 }
 
 /// Equations of a mechanism that are integrated, and how their state is shown.
@@ -107,5 +127,61 @@ where
     }
     fn set_input(&mut self, index: usize, value: f64) {
         self.in_duals_mut().set_input(index, Scalar::constant(value));
+    }
+}
+
+impl<M: JointJacobian<Joints: 'static> + 'static> MovingInputs<M> for Joint {
+    fn moving_jacobian(
+        &self,
+        mechanism: &M,
+        inputs: &[Moving<M::Scalar>],
+        (t, x): (M::Scalar, &M::Joints),
+        dfdx: &mut M::Jacobian,
+        dfdt: &mut M::Joints,
+    ) {
+        self.jacobian(mechanism, t, x, dfdx, dfdt);
+        let mut by_inputs = mechanism.jacobian_buffers().input_jacobian;
+        mechanism.joint_input_jacobian(t, x, &mut by_inputs);
+        let n_inputs = mechanism.description().inputs.len();
+        for (slope, row) in dfdt.as_mut().iter_mut().zip(by_inputs.as_ref().chunks_exact(n_inputs)) {
+            for (index, [_, rate]) in inputs {
+                *slope = M::Scalar::fused(row[*index], *rate, *slope);
+            }
+        }
+    }
+}
+
+/// By dual numbers: the model in them is set to the inputs, and once more with their slopes in the first column.
+impl<M, E, D, S, T> MovingInputs<M> for ByDuals<E, D, S, Vec<T>, COLUMNS>
+where
+    M: Mechanism<Scalar = T>,
+    T: Scalar,
+    D: Mechanism<Scalar = Dual<T, COLUMNS>> + Clone,
+    E: Clone + Ode<D, Scalar = Dual<T, COLUMNS>, State = S>,
+    S: Clone + Debug + AsRef<[Dual<T, COLUMNS>]> + AsMut<[Dual<T, COLUMNS>]>,
+    Self: Lens<M> + Jacobian<M, Matrix = Vec<T>>,
+{
+    fn moving_jacobian(
+        &self,
+        mechanism: &M,
+        inputs: &[Moving<T>],
+        (t, y): (T, &Self::State),
+        dfdy: &mut Vec<T>,
+        dfdt: &mut Self::State,
+    ) {
+        let mut own = self.clone();
+        for (index, [value, _]) in inputs {
+            own.in_duals_mut().set_input(*index, Dual::new(*value));
+        }
+        own.jacobian(mechanism, t, y, dfdy, dfdt);
+        for (index, [value, rate]) in inputs {
+            let mut moving = Dual::new(*value);
+            moving.slopes[0] = *rate;
+            own.in_duals_mut().set_input(*index, moving);
+        }
+        let by_inputs = own.derivative_of_model(t, y.as_ref());
+        for (slope, of_inputs) in dfdt.as_mut().iter_mut().zip(by_inputs.as_ref()) {
+            *slope = *slope + of_inputs.slopes[0];
+        }
     }
 }

@@ -3,6 +3,8 @@
 mod builders;
 mod contract;
 mod correction;
+mod course;
+mod feed;
 mod independent;
 mod lens;
 mod linearise;
@@ -12,7 +14,9 @@ mod single;
 
 pub use builders::{Any, Projecting, Tree, TreeWithJacobian, WithDuals};
 pub use contract::{COLUMNS, Element, Linear, Maximal, Motion, MotionBuilder, OperatingPoint};
+pub use course::Course;
 pub use independent::Closing;
+pub use lens::joints_near;
 pub use linearising::{ByDuals, ByJacobian, Examined, Linearise, Nothing};
 pub use single::{
     Direct, Implicit, ImplicitInJoints, ImplicitInJointsByDuals, InClosedForm, InJoints, Kind, Only,

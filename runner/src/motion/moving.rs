@@ -1,6 +1,8 @@
 //! A solver under way.
 
 use super::contract::Motion;
+use super::course::Course;
+use super::feed::{Around, Fed};
 use super::lens::Lens;
 use crate::approach::{Approach, Correction as Keeping, Integrator};
 use gyro_sim::integrate::Method;
@@ -21,7 +23,7 @@ where
     C: Correction<L, M> + 'static,
 {
     match approach.integrator {
-        Integrator::Rk4 => Box::new(Fixed(solver(lens, Kutta4::new(y), correction, approach, y))),
+        Integrator::Rk4 => Box::new(Fixed(solver(lens, Kutta4::new(y), correction, approach, y), None)),
         Integrator::Tsit5 => adaptive(lens, Tsit5::new(y), correction, approach, y),
         _ => adaptive(lens, Dop853::new(y), correction, approach, y),
     }
@@ -37,21 +39,23 @@ pub(super) fn adaptive<M, L, A, C>(
 where
     M: Mechanism<Scalar: Real> + 'static,
     L: Lens<M>,
-    A: Method<L, M> + 'static,
+    A: Method<Fed<L, M>, M> + 'static,
     C: Correction<L, M> + 'static,
 {
-    Box::new(Adaptive(solver(lens, method, correction, approach, y)))
+    Box::new(Adaptive(solver(lens, method, correction, approach, y), None))
 }
 
-fn solver<L, S, T: Real, A, C>(
+type Solving<L, M, S, A, C> = Solver<Fed<L, M>, S, <M as Mechanism>::Scalar, A, Around<C>>;
+
+fn solver<L, M: Mechanism<Scalar: Real>, S, A, C>(
     lens: L,
     method: A,
     correction: C,
     approach: &Approach,
     y: &S,
-) -> Solver<L, S, T, A, C>
+) -> Solving<L, M, S, A, C>
 where
-    S: Clone + Debug + AsRef<[T]> + AsMut<[T]>,
+    S: Clone + Debug + AsRef<[M::Scalar]> + AsMut<[M::Scalar]>,
 {
     let mut control = Control::default();
     if let Some(tolerance) = approach.tolerance {
@@ -65,22 +69,39 @@ where
         // Never, or when the schedule says so.
         _ => When::Steps(u32::MAX),
     };
-    Solver::with_correction(lens, method, correction, T::constant(0.0), y).with_control(control)
+    Solver::with_correction(Fed::of(lens), method, Around(correction), Scalar::constant(0.0), y)
+        .with_control(control)
 }
 
 /// A method without an error estimate.
-struct Fixed<L, S, T, A, C>(Solver<L, S, T, A, C>);
+struct Fixed<L, M: Mechanism, S, A, C>(Solving<L, M, S, A, C>, Option<Course>);
 
 /// A method with one.
-struct Adaptive<L, S, T, A, C>(Solver<L, S, T, A, C>);
+struct Adaptive<L, M: Mechanism, S, A, C>(Solving<L, M, S, A, C>, Option<Course>);
+
+impl<L, M: Mechanism<Scalar: Real>, S, A, C> Adaptive<L, M, S, A, C>
+where
+    S: Clone + Debug + AsRef<[M::Scalar]> + AsMut<[M::Scalar]>,
+{
+    /// Where the next step has to end at the latest. A knot that has been reached is left behind: what comes after it
+    /// has nothing of what was before.
+    fn before_knot(&mut self, t_end: f64) -> f64 {
+        let Some(course) = &mut self.1 else { return t_end };
+        if let Some(knot) = course.pass::<M::Scalar>(self.0.time().to_f64()) {
+            self.0.dynamics_mut().enter(course, knot);
+            self.0.system_has_changed();
+        }
+        course.ahead::<M::Scalar>().map_or(t_end, |knot| knot.min(t_end))
+    }
+}
 
 macro_rules! motion {
     ($type:ident, |$self:ident, $mechanism:ident, $t_end:ident| $towards:expr) => {
-        impl<M, L, A, C> Motion<M> for $type<L, L::State, M::Scalar, A, C>
+        impl<M, L, A, C> Motion<M> for $type<L, M, L::State, A, C>
         where
             M: Mechanism<Scalar: Real> + 'static,
             L: Lens<M>,
-            A: Method<L, M>,
+            A: Method<Fed<L, M>, M>,
             C: Correction<L, M>,
         {
             fn step(&mut self, mechanism: &M, h: f64) -> Result<(), Error> {
@@ -99,23 +120,35 @@ macro_rules! motion {
                 let (solver, t) = (&mut self.0, Scalar::constant(t));
                 let mut state = solver.state().clone();
                 solver.interpolate(mechanism, t, &mut state)?;
-                solver.dynamics().show(mechanism, t, &state, y);
+                solver.dynamics().lens.show(mechanism, t, &state, y);
                 Ok(())
             }
             fn set_input(&mut self, index: usize, value: f64) {
-                self.0.dynamics_mut().set_input(index, value);
+                self.0.dynamics_mut().lens.set_input(index, value);
+                self.0.system_has_changed();
+            }
+            fn follow(&mut self, inputs: Option<M>, course: Course) {
+                let dynamics = self.0.dynamics_mut();
+                if let Some(mechanism) = inputs {
+                    dynamics.follow(mechanism);
+                }
+                dynamics.enter(&course, 0.0);
+                self.1 = Some(course);
                 self.0.system_has_changed();
             }
             fn statistics(&self) -> Statistics {
                 *self.0.statistics()
             }
             fn chart_switches(&self) -> u64 {
-                Correction::<L, M>::switches(self.0.correction())
+                Correction::<Fed<L, M>, M>::switches(self.0.correction())
             }
         }
     };
 }
 
-motion!(Adaptive, |self, mechanism, t_end| self.0.step_towards(mechanism, Scalar::constant(t_end)));
+motion!(Adaptive, |self, mechanism, t_end| {
+    let t_end = self.before_knot(t_end);
+    self.0.step_towards(mechanism, Scalar::constant(t_end))
+});
 
 motion!(Fixed, |self, mechanism, t_end| self.step(mechanism, t_end - self.time()));

@@ -1,9 +1,11 @@
+mod inputs;
+
 use super::*;
 use crate::JointSample;
 use crate::spinner::Spinner;
 
 fn samples(rate: f64, settings: &Settings) -> (Vec<Sample>, Summary) {
-    let spinner = Spinner { rate, torque: 0.0 };
+    let spinner = Spinner { rate, ..Spinner::default() };
     samples_of(spinner.initial(), spinner, settings)
 }
 
@@ -50,7 +52,7 @@ fn corrections_keep_the_constraints_that_integration_loses() {
 
 #[test]
 fn inputs_are_set_before_every_step_and_every_sample() {
-    let ramp = Input { index: 0, rows: vec![[0.0, 0.0], [1.0, 2.0]] };
+    let ramp = Input::new(0, vec![[0.0, 0.0], [1.0, 2.0]], crate::Between::Linear);
     let start = Start { inputs: vec![ramp], ..Spinner::default().initial() };
     for correct_every in [None, Some(0.2)] {
         let settings = Settings { t_end: 2.0, step: 0.05, correct_every, sample_every: 1.0 };
@@ -67,13 +69,13 @@ fn inputs_are_set_before_every_step_and_every_sample() {
 #[test]
 fn turn_references_are_the_last_elements_of_the_state() {
     let start = Start { turn_references: vec![7.0], ..Spinner::default().initial() };
-    let failure = state(&Spinner::default(), &start).unwrap_err().to_string();
+    let failure = state(&Spinner::<f64>::default(), &start).unwrap_err().to_string();
     assert!(failure.contains("1 turn references") && failure.contains("13 elements"), "{failure}");
 }
 
 #[test]
 fn a_run_that_blows_up_says_where() {
-    let mut spinner = Spinner { rate: f64::MAX, torque: 0.0 };
+    let mut spinner = Spinner { rate: f64::MAX, ..Spinner::default() };
     let start = spinner.initial();
     let settings = Settings { t_end: 1.0, step: 0.1, correct_every: None, sample_every: 0.1 };
     let failure = run(&mut spinner, &settings, &start, |_| Ok(())).unwrap_err().to_string();
@@ -83,6 +85,6 @@ fn a_run_that_blows_up_says_where() {
 #[test]
 fn a_start_of_another_mechanism_is_refused() {
     let settings = Settings { t_end: 1.0, step: 0.1, correct_every: None, sample_every: 0.1 };
-    let failure = run(&mut Spinner::default(), &settings, &Start::default(), |_| Ok(())).unwrap_err();
+    let failure = run(&mut Spinner::<f64>::default(), &settings, &Start::default(), |_| Ok(())).unwrap_err();
     assert!(failure.to_string().starts_with("the start has 0 positions"), "{failure}");
 }

@@ -41,6 +41,8 @@ export function keys(clock, place) {
   addEventListener('keydown', (event) => {
     const tag = event.target.tagName;
     if (event.ctrlKey || event.metaKey || event.altKey || place.help.open || tag === 'SELECT') return;
+    // Numbers and sliders of a live mechanism take their keys themselves.
+    if (event.target.closest?.('.live') && tag === 'INPUT') return;
     // A button in focus takes the space bar itself.
     if (event.key === ' ' && tag === 'BUTTON') return;
     const action = actions[event.key];

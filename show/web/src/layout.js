@@ -49,6 +49,7 @@ export function layout(head, scenes) {
         keep('picture', element('div', { class: 'canvas' })),
         keep('options', element('div', { class: 'options' })),
         keep('label', element('div', { class: 'label', hidden: '' })),
+        keep('live', element('aside', { class: 'live', hidden: '', 'aria-label': 'parameters and inputs' })),
         keep('panel', element('aside', { class: 'panel', hidden: '' })),
         keep('word', element('p', { class: 'word', hidden: '' }))),
       keep('plots', element('section', { class: 'plots', 'aria-label': 'plots' }))),

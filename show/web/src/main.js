@@ -6,6 +6,9 @@ import { timeline } from './timeline.js';
 import { plots } from './plots.js';
 import { panel } from './panel.js';
 import { keys } from './keys.js';
+import { Live } from './live.js';
+import { sliders } from './sliders.js';
+import { drawnWith } from './drawn.js';
 import { watchTheme } from './theme.js';
 import { picture } from './scene/picture.js';
 
@@ -22,7 +25,7 @@ const numbers = panel(place, scenes, clock);
 keys(clock, place);
 
 // For tests and for `gallery.mjs`: what the page shows, and how long it took.
-const api = { clock, scenes, charts, numbers, marks, picture: null };
+const api = { clock, scenes, charts, numbers, marks, picture: null, live: null };
 globalThis.gyroPage = api;
 
 // The plots are on the screen before the picture's shaders are compiled.
@@ -31,4 +34,20 @@ requestAnimationFrame(() => setTimeout(() => {
   marks.picture = performance.now() - began;
   clock.touch();
   document.body.dataset.ready = api.picture ? 'picture' : 'plots';
+  if (gyro.head.live) runLive();
 }));
+
+// The first run is computed anew, here, and from then on whenever something is set.
+async function runLive() {
+  const [scene] = scenes;
+  const live = await Live.of(gyro.head.live, gyro.module, scene);
+  api.live = live;
+  sliders(place, live, clock, (kind) => {
+    if (kind === 'parameter' && drawnWith(scene.mechanism, gyro.head.live, live.mechanism.parameters)) api.picture?.remake();
+  });
+  live.listen(() => {
+    charts.renew();
+    api.picture?.renew();
+    clock.touch();
+  });
+}

@@ -179,7 +179,7 @@ export function plots(place, scenes, clock, theme) {
   clock.listen(() => { for (const chart of made) chart.point(); });
   theme.listen(() => { for (const { u } of made) u.redraw(false); });
   new ResizeObserver(() => { for (const chart of made) chart.resize(); }).observe(place);
-  return { made, zoom, range: () => range };
+  return { made, zoom, range: () => range, renew: () => { for (const chart of made) chart.show(); } };
 }
 
 // As many digits as the page keeps.

@@ -14,4 +14,17 @@ export const MODELS = [
   ['models/double-wishbone.toml', ['--t-end', '1', '--every', '0.01'], 0.5],
 ];
 
+// Those that are computed in the page, too.
+export const LIVE = [
+  ['models/gyroscope.toml', ['--t-end', '1']],
+  ['models/driven-gyroscope.toml', ['--t-end', '1']],
+  ['models/four-bar.toml', ['--t-end', '2']],
+  ['examples/cart-pendulum/cart-pendulum.toml', ['--t-end', '2']],
+  ['examples/arm/arm.toml', ['--t-end', '2']],
+  ['examples/pendulum.toml', ['--t-end', '2']],
+];
+// Too stiff for the method that such a page begins with.
+export const STIFF = ['models/gyroscope-stiff.toml', ['--t-end', '1', '--every', '0.01', '--integrator', 'tsit5', '--tolerance', '1e-4']];
+
+export const ROOT = new URL('../../..', import.meta.url).pathname;
 export const nameOf = (file) => file.replace(/^.*\//, '').replace(/\.toml$/, '');

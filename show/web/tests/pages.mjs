@@ -2,11 +2,11 @@
 import { execFileSync } from 'node:child_process';
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
-import { MODELS, nameOf } from './models.mjs';
+import { LIVE, MODELS, ROOT, STIFF, nameOf } from './models.mjs';
 
-const ROOT = new URL('../../..', import.meta.url).pathname;
 const OTHERS = [
   ['examples/pendulum.toml', ['--t-end', '1', '--compare', 'length=0.4', '--reactions'], 'compared'],
+  ...[...LIVE, STIFF].map(([file, more]) => [file, [...more, '--live'], `live-${nameOf(file)}`]),
   ['examples/pendulum.toml', ['--t-end', '100', '--every', '0.001', '--step', '0.001'], 'many'],
 ];
 

@@ -10,13 +10,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates whose modules are looked at.
-const CRATES: [&str; 13] = [
+const CRATES: [&str; 15] = [
     "model",
     "codegen",
     "gyro-sim",
     "assembled",
+    "jit",
     "verifier",
     "runner",
+    "sweep",
     "cli",
     "xtask",
     "mechanisms",
@@ -30,10 +32,11 @@ const CRATES: [&str; 13] = [
 const LINES: usize = 500;
 
 /// The generator's stages, in their order: the modules of one use those of itself and of earlier ones.
-const STAGES: [&str; 11] = [
+const STAGES: [&str; 14] = [
     "groups",
     "expr",
     "simplify",
+    "effort",
     "derive",
     "solve",
     "joint_space",
@@ -41,6 +44,8 @@ const STAGES: [&str; 11] = [
     "kernels",
     "selection",
     "repeat",
+    "tape",
+    "scheduled",
     "emit",
 ];
 

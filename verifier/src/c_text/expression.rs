@@ -65,8 +65,8 @@ impl Reader<'_> {
                 Ok(inner)
             }
             "sqrt" | "sqrtf" => self.called(Function::Sqrt),
-            "libm_sin" | "libm_sinf" => self.called(Function::Sin),
-            "libm_cos" | "libm_cosf" => self.called(Function::Cos),
+            "libm_sin" | "gyro_sinf" => self.called(Function::Sin),
+            "libm_cos" | "gyro_cosf" => self.called(Function::Cos),
             "libm_tanh" | "libm_tanhf" => self.called(Function::Tanh),
             "libm_atan2" | "libm_atan2f" => {
                 self.expect("(")?;

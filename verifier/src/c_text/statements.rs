@@ -1,7 +1,8 @@
 //! Statements of the C subset, run as they are read.
 
+use super::Stored;
 use super::tokens::Token;
-use super::{Nodes, Stored};
+use crate::nodes::Nodes;
 use crate::program::Id;
 use crate::refusal::Refusal;
 use std::collections::HashMap;

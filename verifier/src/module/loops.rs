@@ -90,6 +90,7 @@ impl Reader<'_> {
             return Err(refused(assign));
         };
         self.count(parts.len(), repeated)?;
+        self.program.loops.push((repeated.span().start().line, repeated.span().end().line));
         let mut is_first = true;
         for part in parts {
             let start = self.bound.len();

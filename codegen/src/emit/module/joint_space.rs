@@ -5,7 +5,7 @@ use crate::emit::literals::float;
 use crate::emit::tokens::{Body, ident, index};
 use crate::joint_space::JointSpace;
 use crate::kernels::Kernel;
-use gyro_model::Attachment;
+use crate::scheduled::{self, JointPlace};
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -64,29 +64,20 @@ impl ModuleWriter<'_> {
 
     /// What stands where in a joint state.
     fn joint_layout(&self, space: &JointSpace) -> TokenStream {
-        let bodies = self.moving_bodies();
-        let mut places = Vec::new();
-        for link in &space.layout.links {
-            for scalar in link.scalars.iter().filter(|scalar| scalar.place.x < space.layout.n_coordinates) {
-                let [joint, coordinate] = [scalar.coordinate.joint, scalar.coordinate.coordinate].map(index);
-                places.push((scalar.place.x, quote! { Scalar { joint: #joint, coordinate: #coordinate } }));
+        let places = scheduled::places(self.equations.model, space).into_iter().map(|place| match place {
+            JointPlace::Scalar { joint, coordinate } => {
+                let [joint, coordinate] = [joint, coordinate].map(index);
+                quote! { gyro_sim::JointPlace::Scalar { joint: #joint, coordinate: #coordinate } }
             }
-            let Some(place) = link.orientation else { continue };
-            let place = match (link.link.attachment, link.position) {
-                (Attachment::Joint { joint, .. }, _) => {
-                    let joint = index(joint);
-                    (place.x, quote! { Orientation { joint: #joint } })
-                }
-                (_, position) => {
-                    let body = bodies.iter().position(|&body| body == link.link.body);
-                    let body = index(body.expect("it has coordinates"));
-                    (position.expect("nothing else holds it").x, quote! { Body { body: #body } })
-                }
-            };
-            places.push(place);
-        }
-        places.sort_by_key(|(x, _)| *x);
-        let places = places.into_iter().map(|(_, place)| quote! { gyro_sim::JointPlace::#place });
+            JointPlace::Orientation { joint } => {
+                let joint = index(joint);
+                quote! { gyro_sim::JointPlace::Orientation { joint: #joint } }
+            }
+            JointPlace::Body { body } => {
+                let body = index(body);
+                quote! { gyro_sim::JointPlace::Body { body: #body } }
+            }
+        });
         let closure_rows = space.closure_rows.iter().copied().map(index);
         quote! {
             fn joint_layout(&self) -> &gyro_sim::JointLayout<'_> {
@@ -117,9 +108,9 @@ impl ModuleWriter<'_> {
             |values| quote! { *out = [#(#values),*]; },
         );
         let what = "One Newton step of the joint coordinates towards closed loops";
-        let positions = self.closing(Kernel::ClosePositions, what, 0);
+        let positions = self.closing(Kernel::ClosePositions, what);
         let what = "Changes the rates such that loops stay closed";
-        let velocities = self.closing(Kernel::CloseVelocities, what, space.layout.n_coordinates);
+        let velocities = self.closing(Kernel::CloseVelocities, what);
         Some(quote! {
             #rows
             #distances
@@ -129,10 +120,9 @@ impl ModuleWriter<'_> {
     }
 
     /// A function that overwrites part of the joint state; what keeps its value is not stored again.
-    fn closing(&self, kernel: Kernel, what: &str, first: usize) -> TokenStream {
-        let changed = (first..).zip(self.kernels.roots(kernel));
-        let changed = changed.filter(|&(place, &root)| !self.is_element_of("x", root, place));
-        let (places, roots): (Vec<_>, Vec<_>) = changed.map(|(place, &root)| (index(place), root)).unzip();
+    fn closing(&self, kernel: Kernel, what: &str) -> TokenStream {
+        let (places, roots) = scheduled::stores(self.equations, kernel, self.kernels.roots(kernel));
+        let places: Vec<_> = places.into_iter().map(index).collect();
         let name = ident(kernel.name());
         self.function(what, &roots, |body, t, _| {
             let (statements, values) = (&body.statements, &body.values);

@@ -4,6 +4,7 @@ use super::writer::ModuleWriter;
 use crate::emit::literals::float;
 use crate::emit::tokens::{self, ident, index};
 use crate::kernels::Kernel;
+use crate::scheduled;
 use gyro_model::{JointKind, RowOwner, RowUnit, Start};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
@@ -66,10 +67,7 @@ impl ModuleWriter<'_> {
     }
 
     fn start(&self, start: &Start) -> TokenStream {
-        let work = self.equations.model.has_work().then_some(0.0);
-        let turns = self.equations.model.turn_references();
-        let turns = turns.iter().map(|turn| start.joints[turn.joint].position[turn.coordinate]);
-        let start = start.q.iter().chain(&start.v).copied().chain(work).chain(turns);
+        let start = scheduled::start(self.equations.model, start).into_iter();
         let start: Vec<_> = start.map(|x| if x == 0.0 { float(0.0) } else { float(x) }).collect();
         quote! {
             fn start(&self) -> Self::State {

@@ -1,11 +1,11 @@
 //! The coordinate partition.
 
 use super::writer::ModuleWriter;
-use crate::emit::tokens::{Variables, ident, index};
-use crate::expr::graph::{ExprId, Node};
+use crate::emit::tokens::{ident, index};
 use crate::expr::symbol::Symbol;
 use crate::groups::Group;
 use crate::kernels::Kernel;
+use crate::scheduled;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -82,17 +82,12 @@ impl ModuleWriter<'_> {
                 }
             },
         );
-        let newton = self.solve(
-            "newton_step_on",
-            "One Newton step of the dependent positions",
-            self.kernels.roots(Kernel::NewtonStep),
-            0,
-        );
+        let newton =
+            self.solve("newton_step_on", "One Newton step of the dependent positions", Kernel::NewtonStep);
         let velocities = self.solve(
             "solve_velocities_on",
             "Solves eq. (19) for the dependent velocities",
-            self.kernels.roots(Kernel::SolveVelocities),
-            7 * self.equations.n_moving_bodies(),
+            Kernel::SolveVelocities,
         );
         quote! {
             /// The solves of the partition, for the charts that are given as unit vectors.
@@ -128,10 +123,10 @@ impl ModuleWriter<'_> {
     }
 
     /// A solve of the partition, which overwrites part of the state; what keeps its value is not stored again.
-    fn solve(&self, name: &str, what: &str, roots: &[ExprId], first: usize) -> TokenStream {
+    fn solve(&self, name: &str, what: &str, kernel: Kernel) -> TokenStream {
         let name = ident(name);
-        let changed = (first..).zip(roots).filter(|&(place, &root)| !self.is_element_of("y", root, place));
-        let (places, roots): (Vec<_>, Vec<_>) = changed.map(|(place, &root)| (index(place), root)).unzip();
+        let (places, roots) = scheduled::stores(self.equations, kernel, self.kernels.roots(kernel));
+        let places: Vec<_> = places.into_iter().map(index).collect();
         let y = ident(if places.is_empty() { "_y" } else { "y" });
         let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
         let n_state = index(self.equations.n_state());
@@ -146,14 +141,5 @@ impl ModuleWriter<'_> {
                 }
             }
         })
-    }
-
-    /// Whether an expression is just an element of a buffer.
-    pub fn is_element_of(&self, buffer: &str, root: ExprId, place: usize) -> bool {
-        let Node::Symbol(symbol) = self.equations.graph.node(root) else { return false };
-        let (buffer, place) = (ident(buffer), index(place));
-        self.variable(*symbol)
-            .1
-            .is_some_and(|source| source.to_string() == quote! { #buffer[#place] }.to_string())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::writer::ModuleWriter;
 use crate::emit::tokens::{Variables, ident, index};
+use crate::equations::Argument;
 use crate::expr::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -66,26 +67,12 @@ impl Variables for ModuleWriter<'_> {
     }
 
     fn element(&self, symbol: Symbol) -> Option<(&'static str, usize)> {
-        let n_bodies = self.equations.n_moving_bodies();
-        match symbol {
-            Symbol::Position { moving_body, k } => Some(("y", 7 * moving_body + k)),
-            Symbol::Euler { moving_body, k } => Some(("y", 7 * moving_body + 3 + k)),
-            Symbol::Velocity { moving_body, k } => Some(("y", 7 * n_bodies + 6 * moving_body + k)),
-            Symbol::Spin { moving_body, k } => Some(("y", 7 * n_bodies + 6 * moving_body + 3 + k)),
-            Symbol::Turn(turn) => {
-                let work = usize::from(self.equations.power.is_some());
-                Some(("y", 13 * n_bodies + work + turn))
-            }
-            Symbol::Acceleration { moving_body, k } => Some(("accelerations", 6 * moving_body + k)),
-            Symbol::LoopMultiplier(row) => Some(("accelerations", self.equations.n_velocities() + row)),
-            Symbol::Change(row) => Some(("rows", row)),
-            Symbol::RateOfRate(place) => Some(("accelerations", place)),
-            Symbol::Coordinate(place) => Some(("x", place)),
-            Symbol::Rate(place) => {
-                let first = self.equations.joint_space.as_ref().map_or(0, |space| space.layout.n_coordinates);
-                Some(("x", first + place))
-            }
-            _ => None,
-        }
+        let name = |argument| match argument {
+            Argument::State => "y",
+            Argument::Joints => "x",
+            Argument::Accelerations => "accelerations",
+            Argument::Rows => "rows",
+        };
+        self.equations.element(symbol).map(|(argument, place)| (name(argument), place))
     }
 }

@@ -4,13 +4,14 @@ use super::tables;
 use crate::emit::data_sheet::printable;
 use crate::emit::literals::Literals;
 use crate::emit::loops;
-use crate::emit::tokens::{self, Body, Variables, ident};
+use crate::emit::tokens::{self, Body, ident};
 use crate::equations::Equations;
 use crate::expr::graph::ExprId;
 use crate::expr::schedule::Operations;
 use crate::expr::symbol::Symbol;
 use crate::kernels::{Kernel, Kernels};
-use crate::repeat::{self, Repetition};
+use crate::repeat::Repetition;
+use crate::scheduled;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 use rustc_hash::FxHashMap as HashMap;
@@ -48,14 +49,15 @@ impl ModuleWriter<'_> {
     }
 
     pub fn body(&self, roots: &[ExprId]) -> Body {
-        let graph = &self.equations.graph;
-        let mut body = match repeat::rolled(graph, roots, &|symbol| self.element(symbol)) {
-            Some(rolled) => {
-                self.repetitions.borrow_mut().insert(roots.to_vec(), rolled.repetition());
-                loops::body(self, &self.literals, &rolled)
-            }
-            None => tokens::body(graph, self, &self.literals, roots),
+        let (kernel, repetition) = scheduled::tape(self.equations, roots);
+        let mut body = if kernel.loops.is_empty() {
+            tokens::body(self, &self.literals, &kernel)
+        } else {
+            loops::body(self, &self.literals, &kernel)
         };
+        if let Some(repetition) = repetition {
+            self.repetitions.borrow_mut().insert(roots.to_vec(), repetition);
+        }
         let tables: BTreeSet<_> = body.symbols.iter().filter_map(table_of).collect();
         let (statements, tables) = (&body.statements, tables.into_iter().map(evaluated_table));
         body.statements = quote! { #(#tables)* #statements };
@@ -126,7 +128,9 @@ impl ModuleWriter<'_> {
             (false, true) => "x",
             (false, false) => "_y",
         });
-        let doc = format!(" {what}: {}.", self.operations(roots));
+        let repetition = self.repetitions.borrow().get(roots).copied();
+        let operations = repetition.map_or_else(|| self.operations(roots), |written| written.operations);
+        let doc = format!(" {what}: {operations}.");
         let function = write(&body, &t, &y);
         quote! { #[doc = #doc] #function }
     }

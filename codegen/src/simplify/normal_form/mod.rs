@@ -11,13 +11,15 @@ mod polynomial;
 mod rescale;
 mod sums;
 
+use crate::expr::evaluate::{evaluate, sample};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Operations;
+use crate::expr::symbol::Symbol;
 use expand::Expansion;
 use factor::factor;
 use polynomial::Polynomial;
 use rescale::{rescale, rescale_pairs};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 use sums::Sums;
 
@@ -80,11 +82,36 @@ fn loses_digits(graph: &Graph, roots: &[ExprId]) -> bool {
 
 /// Whether an expression is zero wherever the identities hold; not, if it is too large to be sure.
 pub fn vanishes(graph: &mut Graph, unit: &[Vec<ExprId>], root: ExprId) -> bool {
+    if is_clearly_something(graph, unit, root) {
+        return false;
+    }
     let relations = relations(graph, unit, &[root]);
     let (first, mut terms) = (vec![0; relations.len()], MAX_TERMS);
     let expanded = expand(graph, &relations, &first, (&[root], &[]), &mut terms);
     expanded.is_some_and(|expanded| expanded.system.sums.iter().all(Vec::is_empty))
 }
+
+/// Whether an expression has, somewhere where the identities hold, a value far beyond what rounding makes of zero.
+fn is_clearly_something(graph: &Graph, unit: &[Vec<ExprId>], root: ExprId) -> bool {
+    let draw = sample(0);
+    let reachable = graph.reachable(&[root]);
+    let known: HashSet<ExprId> = reachable.iter().copied().collect();
+    let symbol = |id: &ExprId| if let Node::Symbol(symbol) = graph.node(*id) { Some(*symbol) } else { None };
+    let mut on_sphere: HashMap<Symbol, f64> = HashMap::new();
+    for point in unit.iter().filter(|point| point.iter().any(|id| known.contains(id))) {
+        let Some(symbols) = point.iter().map(symbol).collect::<Option<Vec<_>>>() else { return false };
+        let norm = symbols.iter().map(|&symbol| draw(symbol).powi(2)).sum::<f64>().sqrt();
+        on_sphere.extend(symbols.into_iter().map(|symbol| (symbol, draw(symbol) / norm)));
+    }
+    let value = |symbol| on_sphere.get(&symbol).copied().unwrap_or_else(|| draw(symbol));
+    let values: Vec<f64> = evaluate(graph, &reachable, value);
+    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    // The root is reached last.
+    values.last().is_some_and(|value| value.abs() > CLEAR * largest)
+}
+
+/// So much of the largest intermediate value is far beyond its rounding.
+const CLEAR: f64 = 1e-6;
 
 /// The given points that the roots depend on, and the sines and cosines among what they depend on. No two have an atom
 /// in common, or they could replace each other's squares without end.

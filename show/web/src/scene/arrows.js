@@ -58,6 +58,13 @@ export class Arrows {
     Object.assign(this, { all, world, size, drawn: null, on: false });
   }
 
+  // Of a run or a mechanism that has changed.
+  renew() {
+    for (const { arrows } of this.drawn ?? []) for (const each of arrows) each.removeFromParent();
+    this.drawn = null;
+    this.turn(this.on);
+  }
+
   turn(on) {
     this.on = on;
     if (on && !this.drawn) this.make();

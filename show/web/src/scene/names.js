@@ -19,6 +19,8 @@ export class Names {
     });
   }
 
+  remove() { for (const { made } of this.tags) made.remove(); }
+
   turn(on) {
     this.on = on;
     for (const { made } of this.tags) made.hidden = !on;

@@ -53,17 +53,18 @@ export function picture(place, scenes, clock, theme, numbers) {
   world.add(ground.group);
   const sun = lights(world, points, up, from);
 
-  const names = new Names(place.picture, scenes[0].mechanism, all[0]);
+  let names = new Names(place.picture, scenes[0].mechanism, all[0]);
   const trails = new Trails(all, stage);
   const arrows = new Arrows(all, world, size);
   const frames = new Group();
-  const ownAxes = all[0].bodies.map(({ group }) => {
+  const axesOf = ({ bodies }) => bodies.map(({ group }) => {
     const axes = new AxesHelper(0.16 * size);
     axes.visible = false;
     axes.raycast = () => {};
     group.add(axes);
     return axes;
   });
+  let ownAxes = axesOf(all[0]);
   world.add(frames);
 
   let waiting = false;
@@ -77,6 +78,20 @@ export function picture(place, scenes, clock, theme, numbers) {
     gl.render(world, camera);
   };
   const ask = () => { if (!waiting) { waiting = true; requestAnimationFrame(draw); } };
+  // Another run of the same bodies.
+  const renew = () => { trails.renew(); arrows.renew(); ask(); };
+  // Other bodies: the first run's mechanism has other measures.
+  const remake = () => {
+    stage.remove(all[0].root);
+    all[0] = new Actors(scenes[0], 0, theme.colours);
+    stage.add(all[0].root);
+    ownAxes = axesOf(all[0]);
+    names.remove();
+    names = new Names(place.picture, scenes[0].mechanism, all[0]);
+    for (const box of Object.values(boxes)) box.onchange();
+    all[0].select(numbers.selected());
+    renew();
+  };
   const home = () => { fit(camera, controls.target, points, from, up); controls.update(); ask(); };
 
   const toggles = {
@@ -156,7 +171,7 @@ export function picture(place, scenes, clock, theme, numbers) {
   resize();
   controls.addEventListener('change', ask);
   clock.listen(ask);
-  return { canvas, camera, controls, home, draw, boxes, all, gl, points, under };
+  return { canvas, camera, controls, home, draw, renew, remake, boxes, all, gl, points, under };
 }
 
 const most = (points, value) => points.reduce((best, p) => Math.max(best, value(p)), -Infinity);

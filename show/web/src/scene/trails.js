@@ -14,6 +14,13 @@ export class Trails {
     this.on = false;
   }
 
+  // Of a run that has changed, the next time that they are asked for.
+  renew() {
+    for (const { line } of this.lines ?? []) line.removeFromParent();
+    this.lines = null;
+    this.turn(this.on);
+  }
+
   turn(on) {
     this.on = on;
     if (on && !this.lines) this.lines = this.all.flatMap((actors) => this.make(actors));

@@ -1,6 +1,6 @@
 //! Exported C computes the bits of the Rust that it was written from: functions at random states, and trajectories.
 
-use crate::program;
+use crate::target::{Program, Target};
 use gyro_c_tests as modules;
 use gyro_export::Precision;
 use gyro_sim::integrate::Method;
@@ -11,8 +11,7 @@ use gyro_sim::{
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 /// A number type of C.
 trait Number: Real {
@@ -46,18 +45,18 @@ fn numbers<T: Number>(numbers: &[f64]) -> Vec<T> {
 }
 
 /// The program of a mechanism; none where there is nothing to compare.
-fn program<T: Number>(page: &str) -> Option<PathBuf> {
+fn program<T: Number>(target: Target, page: &str) -> Option<Program> {
     if gyro_sim::fused::IS_FUSED {
         eprintln!("skipped: this build fuses products and sums, unlike the feature `deterministic`");
         return None;
     }
-    program::program(page, T::PRECISION, ("driver", include_str!("driver.c")), &[])
+    target.program(page, T::PRECISION)
 }
 
 /// What the program writes.
-fn told<T: Number>(program: &Path, argument: &str, numbers: &[T]) -> Vec<T> {
-    let mut child = Command::new(program)
-        .arg(argument)
+fn told<T: Number>(program: &Program, argument: &str, numbers: &[T]) -> Vec<T> {
+    let mut child = program
+        .command(argument)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()
@@ -80,7 +79,7 @@ fn same<T: Number>(what: &str, rust: &[T], c: &[T]) {
 }
 
 /// Functions at random states, near the constraints or not.
-fn kernels<T, M>(program: &Path, mechanism: &M, set: &[T])
+fn kernels<T, M>(program: &Program, mechanism: &M, set: &[T])
 where
     T: Number,
     M: Dynamics<Scalar = T> + CorrectedDynamics + JointSpace,
@@ -139,7 +138,7 @@ struct Run {
 type Running<T, M, A> = Solver<Joint, <M as JointSpace>::Joints, T, A, CloseLoops<M>>;
 
 fn run<T, M, A>(
-    program: &Path,
+    program: &Program,
     mechanism: &M,
     set: &[T],
     (method, run): (A, Run),
@@ -193,7 +192,7 @@ fn status(outcome: &Result<(), Error>) -> f64 {
 }
 
 /// One second in 50 samples: by steps of fixed length and under error control.
-fn trajectories<T, M>(program: &Path, mechanism: &M, set: &[T])
+fn trajectories<T, M>(program: &Program, mechanism: &M, set: &[T])
 where
     T: Number,
     M: JointSpace<Scalar = T>,
@@ -216,7 +215,7 @@ where
 }
 
 /// The same by the implicit method.
-fn implicit<T, M>(program: &Path, mechanism: &M, set: &[T])
+fn implicit<T, M>(program: &Program, mechanism: &M, set: &[T])
 where
     T: Number,
     M: JointJacobian<Scalar = T>,
@@ -227,24 +226,44 @@ where
     run(program, mechanism, set, (method, controlled), |solver, m| solver.step_towards(m, T::constant(1.0)));
 }
 
-/// One test for a mechanism: its page, its type and number type, what is set, and what besides is compared.
+/// The tests of a mechanism: its page, its type and number type, what is set, and what besides is compared.
 macro_rules! mechanism {
     ($name:ident, $module:ident::$ty:ident<$number:ty>, $page:literal, $parameters:expr, $inputs:expr $(, $more:ident)*) => {
-        #[test]
-        fn $name() {
-            let Some(program) = program::<$number>($page) else { return };
-            let mut mechanism = modules::$module::$ty::<$number>::default();
-            let (parameters, inputs) = (numbers(&$parameters), numbers(&$inputs));
-            for (place, value) in parameters.iter().enumerate() {
-                assert!(mechanism.set_parameter(place, *value));
+        mod $name {
+            use super::*;
+
+            fn check(target: Target) {
+                let Some(program) = program::<$number>(target, $page) else { return };
+                let mut mechanism = modules::$module::$ty::<$number>::default();
+                let (parameters, inputs) = (numbers(&$parameters), numbers(&$inputs));
+                for (place, value) in parameters.iter().enumerate() {
+                    assert!(mechanism.set_parameter(place, *value));
+                }
+                for (place, value) in inputs.iter().enumerate() {
+                    assert!(mechanism.set_input(place, *value));
+                }
+                let set = [parameters, inputs].concat();
+                kernels(&program, &mechanism, &set);
+                trajectories(&program, &mechanism, &set);
+                $($more(&program, &mechanism, &set);)*
             }
-            for (place, value) in inputs.iter().enumerate() {
-                assert!(mechanism.set_input(place, *value));
+
+            #[test]
+            fn here() {
+                check(Target::Here);
             }
-            let set = [parameters, inputs].concat();
-            kernels(&program, &mechanism, &set);
-            trajectories(&program, &mechanism, &set);
-            $($more(&program, &mechanism, &set);)*
+
+            #[test]
+            #[ignore = "needs the tools of embedded/setup.sh"]
+            fn on_a_cortex_m7() {
+                check(Target::CortexM7);
+            }
+
+            #[test]
+            #[ignore = "needs the tools of embedded/setup.sh"]
+            fn in_webassembly() {
+                check(Target::WebAssembly);
+            }
         }
     };
 }

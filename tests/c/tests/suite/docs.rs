@@ -1,7 +1,9 @@
-//! The program of docs/export.md does what the page says.
+//! The programs of docs/export.md do what the page says.
 
 use crate::program::program;
+use crate::target::{es_module, tool};
 use gyro_export::Precision;
+use std::fs;
 use std::process::Command;
 
 const PAGE: &str = include_str!("../../../../docs/export.md");
@@ -19,4 +21,17 @@ fn the_program_of_the_page_prints_what_the_page_shows() {
     let Some(program) = program(page, Precision::F64, ("main", block("c")), &[]) else { return };
     let output = Command::new(program).output().expect("the program starts");
     assert_eq!(String::from_utf8_lossy(&output.stdout), block("text"));
+}
+
+#[test]
+#[ignore = "needs the tools of embedded/setup.sh"]
+fn the_script_of_the_page_prints_the_same_angles() {
+    let script = es_module("examples/pendulum.toml", Precision::F64).with_file_name("page.mjs");
+    fs::write(&script, block("js")).expect("a file");
+    let output = Command::new(tool("node")).arg(script).output().expect("node starts");
+    let angles = |text: &str| -> Vec<String> {
+        let shown = |line: &str| line.split(" rad").next().unwrap_or_default().replace('+', "");
+        text.lines().map(shown).collect()
+    };
+    assert_eq!(angles(&String::from_utf8_lossy(&output.stdout)), angles(block("text")));
 }

@@ -5,4 +5,5 @@ mod docs;
 mod hostile;
 mod program;
 mod proof;
+mod target;
 mod unit;

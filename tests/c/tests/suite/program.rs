@@ -8,7 +8,7 @@ use std::process::Command;
 use std::{env, fs};
 
 /// Of gcc and clang alike.
-const FLAGS: [&str; 8] =
+pub(crate) const FLAGS: [&str; 8] =
     ["-std=c99", "-O1", "-ffp-contract=off", "-Wall", "-Wextra", "-pedantic", "-Wshadow", "-Werror"];
 
 /// A model file and its module, with the functions that are asked for here, or there, or that solvers call.
@@ -38,20 +38,37 @@ pub(crate) fn own(name: &str, text: &str) -> String {
 pub(crate) fn program(
     page: &str,
     precision: Precision,
-    (main, text_of_main): (&str, &str),
+    main: (&str, &str),
     more: &[&str],
 ) -> Option<PathBuf> {
+    let (folder, sources) = written(page, precision, main, "here");
+    compiled(&folder, (page, main.0), &sources.each_ref().map(String::as_str), more)
+}
+
+/// A folder for a program, of a mechanism and for a target.
+pub(crate) fn folder(name: &str, main: &str, precision: Precision, target: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}_{main}_{precision:?}_{target}"));
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// The sources of a program, in a folder.
+pub(crate) fn written(
+    page: &str,
+    precision: Precision,
+    (main, text_of_main): (&str, &str),
+    target: &str,
+) -> (PathBuf, [String; 2]) {
     let (model, module) = model_and_module(page, None);
     let exported = gyro_export::c(&model, &module.code, precision).expect("C");
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}_{main}_{precision:?}", model.name));
-    fs::create_dir_all(&folder).expect("a folder");
+    let folder = folder(&model.name, main, precision, target);
     let [header, source, around] =
         [format!("{}.h", model.name), format!("{}.c", model.name), format!("{main}.c")];
     let text_of_main = own(&model.name, text_of_main);
     for (file, text) in [(&header, &exported.header), (&source, &exported.source), (&around, &text_of_main)] {
         fs::write(folder.join(file), text).expect("a file");
     }
-    compiled(&folder, (page, main), &[&source, &around], more)
+    (folder, [source, around])
 }
 
 /// The program of some sources in a folder; none without a C compiler.

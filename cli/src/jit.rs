@@ -1,0 +1,135 @@
+//! Runs of generated mechanisms that are compiled in this process.
+
+use crate::args::Precision;
+use crate::failure::Failure;
+
+use crate::runs::Runs;
+use crate::scene::Scene;
+use crate::verify::verify_quickly;
+use crate::{interrupt, progress};
+use gyro_codegen::{Functions, Kernel};
+use gyro_jit::{Compiled, Input, Native, compile_scheduled};
+use gyro_runner::{Event, Summary};
+use gyro_sim::Real;
+use gyro_verifier::{Clif, same_in_clif};
+use std::io;
+
+/// Generates, compiles and runs; `tell` hears of samples and progress.
+///
+/// A run that fails for a reason which a linearisation explains is made again with one, of which the reason is all that
+/// is heard, as runs of compiled programs are.
+pub(crate) fn simulate(scene: &Scene, tell: &mut dyn FnMut(Event<'_>)) -> Result<Summary, Failure> {
+    explained(scene, tell, |runs, tell| match scene.precision {
+        Precision::F32 => run_in::<f32>(scene, runs, tell),
+        Precision::F64 => run_in::<f64>(scene, runs, tell),
+    })
+}
+
+/// The same with whatever makes a run of a kind.
+pub(crate) fn explained(
+    scene: &Scene,
+    tell: &mut dyn FnMut(Event<'_>),
+    run: impl Fn(Option<Runs>, &mut dyn FnMut(Event<'_>)) -> Result<Outcome, Failure>,
+) -> Result<Summary, Failure> {
+    let runs = Runs::of(scene);
+    match run(runs, tell)? {
+        Err(gyro_runner::Failure::Unexplained(words)) => {
+            let is_companion = scene.has_companions && !scene.approach.examine;
+            if !is_companion {
+                run(runs.map(Runs::examined), &mut |_| ())?.map_err(failed)?;
+            }
+            Err(Failure::Run(words))
+        }
+        outcome => outcome.map_err(failed),
+    }
+}
+
+fn failed(failure: gyro_runner::Failure) -> Failure {
+    match failure {
+        gyro_runner::Failure::Refused(words) => Failure::Usage(words),
+        failure => Failure::Run(failure.to_string()),
+    }
+}
+
+/// How a run ends.
+pub(crate) type Outcome = Result<Summary, gyro_runner::Failure>;
+
+fn run_in<T: Native + Real>(
+    scene: &Scene,
+    runs: Option<Runs>,
+    tell: &mut dyn FnMut(Event<'_>),
+) -> Result<Outcome, Failure> {
+    let mut mechanism = compiled::<T>(scene, &functions(runs))?;
+    let _interruptible = interrupt::Run::begin();
+    let outcome = follow(scene, runs, &mut mechanism, &mut interrupt::interruptible(tell));
+    match outcome {
+        Err(gyro_runner::Failure::Output(_)) if interrupt::was_interrupted() => Err(interrupt::failure()),
+        outcome => Ok(outcome),
+    }
+}
+
+/// What is compiled for runs of a kind.
+pub(crate) fn functions(runs: Option<Runs>) -> Functions {
+    runs.map_or_else(Functions::of_solvers, Runs::functions)
+}
+
+/// Makes a run of a scene by a mechanism that has its functions.
+pub(crate) fn follow<T: Native + Real>(
+    scene: &Scene,
+    runs: Option<Runs>,
+    mechanism: &mut Compiled<T>,
+    tell: &mut dyn FnMut(Event<'_>) -> io::Result<()>,
+) -> Outcome {
+    for (index, value) in scene.parameters().into_iter().enumerate() {
+        mechanism.set_parameter(index, T::constant(value));
+    }
+    let runs = gyro_jit::Runs {
+        joint_space: scene.offers.joint_space,
+        is_examined: runs.is_some_and(Runs::is_examined),
+        is_for_all: runs.is_none(),
+    };
+    gyro_jit::simulate(mechanism, runs, (&scene.settings, &scene.approach), &scene.start, tell)
+}
+
+/// Generates and compiles these functions, and proves them if that was asked for.
+pub(crate) fn compiled<T: Native>(scene: &Scene, functions: &Functions) -> Result<Compiled<T>, Failure> {
+    if scene.proves && T::BITS != 64 {
+        return Err(Failure::Usage("--prove is for --precision f64".to_owned()));
+    }
+    let _spinner = progress::deriving(&scene.page);
+    let usage = |words: String| Failure::Usage(words);
+    let scheduled = gyro_codegen::schedule(&scene.page, functions, scene.effort);
+    let scheduled = scheduled.map_err(|error| usage(error.to_string()))?;
+    let (mut given, mut tables) = (Vec::new(), Vec::new());
+    let mut told = |input: Input<'_>| {
+        given.push((input.kernel, input.clif));
+        tables = input.tables.to_vec();
+    };
+    let told = scene.proves.then_some(&mut told as &mut dyn FnMut(Input<'_>));
+    let compiled =
+        compile_scheduled(&scene.page, scheduled, told).map_err(|error| usage(error.to_string()))?;
+    if scene.proves {
+        prove(scene, functions, (&given, &tables))?;
+    }
+    Ok(compiled)
+}
+
+/// Proves the text of the same functions, and that Cranelift was given what this text says.
+fn prove(
+    scene: &Scene,
+    functions: &Functions,
+    (given, tables): (&[(Kernel, String)], &[f64]),
+) -> Result<(), Failure> {
+    let module = gyro_codegen::generate_by_effort(&scene.page_name, &scene.page, functions, scene.effort);
+    let module = module.map_err(|error| Failure::Usage(error.to_string()))?;
+    verify_quickly(&scene.page, &module)?;
+    let clif: Vec<Clif<'_>> =
+        given.iter().map(|(kernel, text)| Clif { name: kernel.name(), text, tables }).collect();
+    let same = same_in_clif(&scene.page, (&module.code, &module.constants), &clif);
+    same.map(|_| ()).map_err(|refusal| {
+        Failure::Run(format!(
+            "what is compiled is not what was proved; this is a mistake of gyro-jit: please report it with the model \
+             file\n{refusal}"
+        ))
+    })
+}

@@ -1,0 +1,181 @@
+//! What generated programs are compiled against, and where: this program carries the sources of the runtime and of the
+//! few crates that it needs, and unpacks them once into a folder of the user's cache. So cargo needs no network, and no
+//! clone of the project has to be kept.
+//!
+//! ```text
+//! CACHE/VERSION-HASH/            a folder for each content that was ever carried
+//!     gyro-sim/ runner/ yardstick/ vendor/ Cargo.toml Cargo.lock .cargo/config.toml
+//!     programs/NAME-HASH/        the package of a generated module
+//!     build/                     what cargo builds of all of them
+//! ```
+
+use crate::failure::Failure;
+use std::collections::hash_map::DefaultHasher;
+use std::fs::{self, File};
+use std::hash::{Hash, Hasher};
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, SystemTime};
+use zip::ZipArchive;
+
+/// Packed by the build script.
+const ARCHIVE: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/runtime.zip"));
+
+/// Where the cache is, if not in the folder that the system has for it.
+const VARIABLE: &str = "GYRO_CACHE";
+
+/// A file of each folder, written when the folder is used.
+const MARK: &str = "used";
+
+/// What has not been used for so long, by a version of the program that is no longer the one that runs, is removed.
+const FORGOTTEN: Duration = Duration::from_hours(30 * 24);
+
+/// The folder of all versions.
+pub(crate) fn cache() -> Result<PathBuf, Failure> {
+    let told = std::env::var_os(VARIABLE).filter(|path| !path.is_empty()).map(PathBuf::from);
+    told.or_else(|| Some(dirs::cache_dir()?.join("gyro"))).ok_or_else(|| {
+        Failure::Usage(format!("this user has no folder for caches: set {VARIABLE} to a folder"))
+    })
+}
+
+/// The folder in which this program builds, with the sources in it.
+pub(crate) fn folder() -> Result<&'static Path, Failure> {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    if let Some(folder) = FOLDER.get() {
+        return Ok(folder);
+    }
+    let cache = cache()?;
+    let unusable = |e: std::io::Error| {
+        let words = format!("{} cannot be used: {e}; {VARIABLE} names another folder", cache.display());
+        Failure::Run(words)
+    };
+    let folder = unpacked(&cache, ARCHIVE).map_err(unusable)?;
+    Ok(FOLDER.get_or_init(|| folder))
+}
+
+/// The name of the folder of an archive.
+pub(crate) fn version() -> String {
+    name(ARCHIVE)
+}
+
+fn name(archive: &[u8]) -> String {
+    let mut hasher = DefaultHasher::new();
+    archive.hash(&mut hasher);
+    format!("{}-{:016x}", env!("CARGO_PKG_VERSION"), hasher.finish())
+}
+
+/// The folder of an archive, which is unpacked if it is not there. It appears whole or not at all, whatever happens
+/// meanwhile.
+fn unpacked(cache: &Path, archive: &[u8]) -> std::io::Result<PathBuf> {
+    // Cargo has paths of its own for what it is not told absolutely.
+    fs::create_dir_all(cache)?;
+    let cache = fs::canonicalize(cache)?;
+    let folder = cache.join(name(archive));
+    if !folder.is_dir() {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let scratch = cache.join(format!("unpacking-{}-{number}", std::process::id()));
+        let _ = fs::remove_dir_all(&scratch);
+        let unpacked =
+            ZipArchive::new(Cursor::new(archive)).and_then(|mut archive| archive.extract(&scratch));
+        unpacked.map_err(std::io::Error::other).inspect_err(|_| {
+            let _ = fs::remove_dir_all(&scratch);
+        })?;
+        if let Err(error) = fs::rename(&scratch, &folder) {
+            let _ = fs::remove_dir_all(&scratch);
+            // Another run may have been quicker.
+            if !folder.is_dir() {
+                return Err(error);
+            }
+        }
+        forget(&cache, &folder);
+    }
+    File::create(folder.join(MARK))?.set_modified(SystemTime::now())?;
+    Ok(folder)
+}
+
+/// Removes the folders of other versions that have not been used for a long time.
+fn forget(cache: &Path, own: &Path) {
+    for version in versions(cache).into_iter().filter(|version| version.folder != own) {
+        if version.used.elapsed().is_ok_and(|since| since > FORGOTTEN) {
+            let _ = fs::remove_dir_all(&version.folder);
+        }
+    }
+}
+
+/// What a version of the program has unpacked and built.
+#[derive(Debug)]
+pub(crate) struct Version {
+    pub(crate) folder: PathBuf,
+    pub(crate) used: SystemTime,
+}
+
+/// All of them, in the order of their names.
+pub(crate) fn versions(cache: &Path) -> Vec<Version> {
+    let entries = fs::read_dir(cache).into_iter().flatten().flatten();
+    let mut found: Vec<Version> = entries
+        .filter_map(|entry| {
+            let used = fs::metadata(entry.path().join(MARK)).and_then(|mark| mark.modified()).ok()?;
+            Some(Version { folder: entry.path(), used })
+        })
+        .collect();
+    found.sort_by(|a, b| a.folder.cmp(&b.folder));
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::tests::Folder;
+    use std::thread;
+
+    #[test]
+    fn the_sources_are_all_there_and_a_second_look_changes_nothing() {
+        let cache = Folder::new();
+        let folder = unpacked(&cache.0, ARCHIVE).unwrap();
+        for file in ["gyro-sim/src/lib.rs", "runner/Cargo.toml", "Cargo.lock", ".cargo/config.toml"] {
+            assert!(folder.join(file).is_file(), "{file}");
+        }
+        let vendored = fs::read_dir(folder.join("vendor")).unwrap().count();
+        let lock = fs::read_to_string(folder.join("Cargo.lock")).unwrap();
+        assert_eq!(vendored, lock.matches("checksum = ").count(), "{lock}");
+        fs::write(folder.join("build"), "kept").unwrap();
+        assert_eq!(unpacked(&cache.0, ARCHIVE).unwrap(), folder);
+        assert_eq!(fs::read_to_string(folder.join("build")).unwrap(), "kept");
+    }
+
+    #[test]
+    fn many_at_once_unpack_one_folder() {
+        let cache = Folder::new();
+        let folders: Vec<PathBuf> = thread::scope(|scope| {
+            let started: Vec<_> =
+                (0..8).map(|_| scope.spawn(|| unpacked(&cache.0, ARCHIVE).unwrap())).collect();
+            started.into_iter().map(|one| one.join().unwrap()).collect()
+        });
+        assert!(folders.iter().all(|folder| *folder == folders[0]));
+        assert_eq!(fs::read_dir(&cache.0).unwrap().count(), 1, "nothing half unpacked is left");
+    }
+
+    #[test]
+    fn what_nobody_uses_is_forgotten() {
+        let cache = Folder::new();
+        let (old, recent) = (cache.0.join("0.0.1-old"), cache.0.join("0.0.1-recent"));
+        for (folder, age) in [(&old, 2 * FORGOTTEN), (&recent, FORGOTTEN / 2)] {
+            fs::create_dir_all(folder).unwrap();
+            let mark = File::create(folder.join(MARK)).unwrap();
+            mark.set_modified(SystemTime::now() - age).unwrap();
+        }
+        let own = unpacked(&cache.0, ARCHIVE).unwrap();
+        assert!(!old.exists() && recent.exists() && own.exists());
+        assert_eq!(versions(&cache.0).len(), 2);
+    }
+
+    #[test]
+    fn a_damaged_archive_leaves_nothing() {
+        let cache = Folder::new();
+        assert!(unpacked(&cache.0, &ARCHIVE[..ARCHIVE.len() / 2]).is_err());
+        assert_eq!(fs::read_dir(&cache.0).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,285 @@
+//! `gyro sweep`: a study's scenarios, on all cores.
+
+mod loaded;
+mod merge;
+mod only;
+mod program;
+#[cfg(feature = "mpi")]
+mod ranks;
+mod results;
+mod starts;
+mod store;
+mod vocabulary;
+mod workers;
+
+use crate::args::{Shard, SweepArgs, SweepCommand};
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::remarks::say;
+use crate::words::{count, number};
+use crate::write::{Known, digest, write};
+use crate::{files, programs, remarks};
+use gyro_runner::{duration_words, protocol};
+use gyro_sweep::child::Job;
+use gyro_sweep::record::Block;
+use indicatif::{ProgressBar, ProgressStyle};
+use loaded::Loaded;
+use program::{Program, Way, program};
+use std::num::NonZeroUsize;
+use std::ops::Range;
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+use store::{Head, Store};
+use workers::Workers;
+
+/// Runs a study, or puts parts of one together.
+pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
+    if let Some(SweepCommand::Merge(parts)) = &args.command {
+        return merge::merge(parts);
+    }
+    let study = args.study.as_deref().unwrap_or(Path::new(""));
+    let loaded = Loaded::new(study)?;
+    let folder = args.out.clone().unwrap_or_else(|| Path::new("out").join(&loaded.name));
+    if let Some(k) = args.only {
+        return only::only(&loaded, k, &folder);
+    }
+    #[cfg(feature = "mpi")]
+    if args.mpi {
+        return ranks::sweep(loaded, args, &folder);
+    }
+    let sweep = Sweep::new(loaded, args)?;
+    if args.estimate {
+        return sweep.estimate();
+    }
+    sweep.fill(&folder, args.resume, |places, keep| sweep.on_cores(places, keep))
+}
+
+/// Takes records, in their order.
+type Keep<'a> = dyn FnMut(Vec<u8>) -> Result<(), Failure> + 'a;
+
+/// A sweep that can be made.
+struct Sweep {
+    loaded: Loaded,
+    way: Way,
+    program: Program,
+    job: Job,
+    head: Head,
+    threads: NonZeroUsize,
+}
+
+impl Sweep {
+    fn new(loaded: Loaded, args: &SweepArgs) -> Result<Self, Failure> {
+        let way = Way::of(&loaded);
+        let program = program(&loaded.study, &loaded.scene, way, args.native)?;
+        let job = job(&loaded);
+        let head = head(&loaded, &job, &program).with(args.shard.unwrap_or(Shard::WHOLE));
+        let cores = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+        Ok(Self { loaded, way, program, job, head, threads: args.threads.unwrap_or(cores) })
+    }
+
+    fn workers(&self) -> Workers<'_> {
+        let assembled = (self.way == Way::Whole).then_some(&self.loaded.scene.page);
+        Workers { program: &self.program.path, job: &self.job, assembled, threads: self.threads }
+    }
+
+    /// Fills a folder with results: `run` runs the blocks at places that it does not have yet.
+    fn fill(
+        &self,
+        folder: &Path,
+        is_resumed: bool,
+        run: impl FnOnce(Range<u64>, &mut Keep<'_>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let opened = Folder::open(folder)?;
+        let folder = opened.path();
+        let store =
+            if is_resumed { Store::resume(folder, &self.head) } else { Store::create(folder, &self.head) };
+        let mut store = store?;
+        let place = self.loaded.place.to_string_lossy();
+        write(&folder.join(store::PLACE), place.as_bytes(), Known::Place).map_err(store::stays)?;
+        self.run(&mut store, run)?;
+        let is_part = self.head.shard[1] > 1;
+        if is_part {
+            return say(&format!(
+                "wrote {}: `sweep merge` puts the parts together\n",
+                folder.join(store::NAME).display()
+            ));
+        }
+        results::write(folder, &self.loaded).map_err(store::stays)
+    }
+
+    fn run(
+        &self,
+        store: &mut Store,
+        run: impl FnOnce(Range<u64>, &mut Keep<'_>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let (first, end) = (store.written, self.head.blocks());
+        if first >= end {
+            return Ok(());
+        }
+        let progress = Progress::new(
+            self.head.scenarios.min(end * u64::from(self.head.block)),
+            first * u64::from(self.head.block),
+        );
+        let (mut done, mut failed) = (0, 0);
+        let mut keep = |bytes: Vec<u8>| {
+            let block = Block::decode(&bytes, self.head.width)
+                .map_err(|error| Failure::Run(format!("the program answers nonsense: {error}")))?;
+            done += u64::from(block.count);
+            failed += block.errors.len() as u64;
+            progress.advance(u64::from(block.count), failed);
+            store.append(&bytes)
+        };
+        let began = Instant::now();
+        run(first..end, &mut keep)?;
+        progress.finish();
+        #[expect(clippy::cast_precision_loss, reason = "for people to read")]
+        let rate = done as f64 / began.elapsed().as_secs_f64();
+        let failures = if failed > 0 { format!(", {failed} of them failed") } else { String::new() };
+        say(&format!("{}{failures}; {} a second\n", count(done, "scenario"), number(rate, 3)))
+    }
+
+    /// Runs blocks on the cores of this machine, and says first what they will cost.
+    fn on_cores(&self, places: Range<u64>, keep: &mut Keep<'_>) -> Result<(), Failure> {
+        let mut next = places.start;
+        let tell = |seconds, run: Range<u64>| {
+            next = run.end;
+            remarks::note(&self.cost(seconds, places.end - next));
+        };
+        self.probe(places.clone(), tell, &mut *keep)?;
+        match next < places.end {
+            true => self.workers().run(next..places.end, |n| self.head.block(n), keep),
+            false => Ok(()),
+        }
+    }
+
+    /// Runs the first of some blocks, and more where it is over at once, which is mostly the start of a program; tells
+    /// how long a block takes, s, and which were run.
+    fn probe(
+        &self,
+        places: Range<u64>,
+        tell: impl FnOnce(f64, Range<u64>),
+        mut keep: impl FnMut(Vec<u8>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let mut run = |places: Range<u64>| {
+            let began = Instant::now();
+            let cores = (self.threads.get() as u64).min(places.end - places.start);
+            self.workers().run(places.clone(), |n| self.head.block(n), &mut keep)?;
+            #[expect(clippy::cast_precision_loss, reason = "a number of blocks")]
+            let blocks = (places.end - places.start) as f64;
+            #[expect(clippy::cast_precision_loss, reason = "a number of cores")]
+            Ok::<f64, Failure>(began.elapsed().as_secs_f64() * cores as f64 / blocks)
+        };
+        let mut end = places.start + 1;
+        let mut each = run(places.start..end)?;
+        if each < QUICK && end < places.end {
+            let more = end..(end + PROBE).min(places.end);
+            end = more.end;
+            each = run(more)?;
+        }
+        tell(each, places.start..end);
+        Ok(())
+    }
+
+    /// Says what so many blocks will cost, from what one of them takes on one core, s.
+    fn cost(&self, one: f64, blocks: u64) -> String {
+        #[expect(clippy::cast_precision_loss, reason = "for people to read")]
+        let [blocks, threads, scenarios] =
+            [blocks as f64, self.threads.get() as f64, self.head.scenarios as f64];
+        let bytes = scenarios * 8.0 * self.head.width as f64;
+        format!(
+            "{} in blocks of {}; a block takes {} s, the rest {} on {}, and all {} MB of disk",
+            count(self.head.scenarios, "scenario"),
+            self.head.block,
+            number(one, 2),
+            duration_words(one * blocks / threads),
+            count(self.threads.get() as u64, "core"),
+            number(bytes / 1e6, 2),
+        )
+    }
+
+    fn estimate(&self) -> Result<(), Failure> {
+        let mut words = String::new();
+        let tell = |seconds, _| words = self.cost(seconds, self.head.blocks()) + "\n";
+        self.probe(0..self.head.blocks(), tell, |_| Ok(()))?;
+        say(&words)
+    }
+}
+
+/// A block that takes less than this, s, and how many more of them tell what one takes.
+const QUICK: f64 = 0.05;
+const PROBE: u64 = 64;
+
+impl Way {
+    fn of(loaded: &Loaded) -> Self {
+        if starts::are_alike(&loaded.study, &loaded.scene) { Self::Packs } else { Self::Whole }
+    }
+}
+
+fn job(loaded: &Loaded) -> Job {
+    let Loaded { study, scene, .. } = loaded;
+    Job {
+        plan: study.plan.clone(),
+        keep: study.keep.clone(),
+        settings: scene.settings,
+        approach: scene.approach,
+        parameters: scene.parameters(),
+        start: scene.start.clone(),
+        block: study.block,
+        measure: study.keep.estimate.then(|| (scene.model.size(), scene.is_balanced)),
+    }
+}
+
+fn head(loaded: &Loaded, job: &Job, program: &Program) -> Head {
+    let mut bytes = Vec::new();
+    protocol::write(&mut bytes, job).expect("memory takes every write");
+    Head {
+        format: 1,
+        name: loaded.name.clone(),
+        study: loaded.text.clone(),
+        path: loaded.path.clone(),
+        program: program.digest.clone(),
+        job: digest(&bytes),
+        commit: commit(),
+        seed: job.plan.seed,
+        scenarios: job.plan.scenarios(),
+        block: job.block,
+        width: job.keep.width(job.times().len()),
+        shard: [0, 1],
+    }
+}
+
+/// The commit that the tool was built from, as far as the workspace tells.
+fn commit() -> String {
+    let mut git = Command::new("git");
+    let version = env!("CARGO_PKG_VERSION").to_owned();
+    git.arg("-C").arg(files::root()).args(["describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]);
+    programs::output(&mut git).map_or(version, |words| words.trim().to_owned())
+}
+
+/// How far a sweep is, on terminals.
+struct Progress(ProgressBar);
+
+impl Progress {
+    fn new(scenarios: u64, done: u64) -> Self {
+        let style = ProgressStyle::with_template(
+            "{bar:40} {human_pos} of {human_len} scenarios, {per_sec}, {eta} left{msg}",
+        );
+        let bar =
+            ProgressBar::new(scenarios).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_position(done);
+        bar.reset_eta();
+        Self(bar)
+    }
+
+    fn advance(&self, scenarios: u64, failed: u64) {
+        self.0.inc(scenarios);
+        if failed > 0 {
+            self.0.set_message(format!(", {failed} failed"));
+        }
+    }
+
+    fn finish(&self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -1,0 +1,98 @@
+//! A study file with its model.
+
+use super::vocabulary::vocabulary;
+use crate::args::{Effort, Precision, SimulateArgs};
+use crate::failure::Failure;
+use crate::scene::{self, Scene};
+use crate::{files, inputs};
+use gyro_sweep::study::{self, Files, Study, Unreadable, Vocabulary};
+use std::path::{Path, PathBuf};
+
+/// A study, its model and how that is run.
+#[derive(Debug)]
+pub(super) struct Loaded {
+    pub(super) study: Study,
+    pub(super) scene: Scene,
+    /// The study's text.
+    pub(super) text: String,
+    /// Its path as results show it.
+    pub(super) path: String,
+    /// Where it is on this machine.
+    pub(super) place: PathBuf,
+    /// Its name.
+    pub(super) name: String,
+}
+
+/// The folder of a study.
+struct Beside<'a>(&'a Path);
+
+impl Files for Beside<'_> {
+    type Error = Failure;
+
+    fn model(&mut self, path: &str) -> Result<Vocabulary, Failure> {
+        scene::read_counting_work(&self.0.join(path)).map(|model| vocabulary(&model))
+    }
+
+    fn table(&mut self, path: &str) -> Result<Vec<[f64; 2]>, String> {
+        inputs::read(&self.0.join(path))
+    }
+}
+
+impl Loaded {
+    /// Reads a study file and its model.
+    ///
+    /// # Errors
+    /// Mistakes in either.
+    pub(super) fn new(path: &Path) -> Result<Self, Failure> {
+        let text = files::read_module(path)?;
+        Self::of_text(path, text)
+    }
+
+    /// The same of a text that stands for the file.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(super) fn of_text(path: &Path, text: String) -> Result<Self, Failure> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let study = match study::read(&path.display().to_string(), &text, &mut Beside(folder)) {
+            Ok(study) => study,
+            Err(Unreadable::Study(mistakes)) => return Err(Failure::ModelFile(mistakes)),
+            Err(Unreadable::Model(failure)) => return Err(failure),
+        };
+        let scene = Scene::new(&arguments(&study, folder.join(&study.model)))?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        Ok(Self { study, scene, text, path: files::shown(path), place, name })
+    }
+}
+
+/// How `simulate` would be asked for a run of the study's model.
+fn arguments(study: &Study, model: PathBuf) -> SimulateArgs {
+    let run = &study.run;
+    SimulateArgs {
+        model,
+        engine: None,
+        effort: Effort::Full,
+        #[cfg(feature = "jit")]
+        prove: false,
+        t_end: run.t_end,
+        step: run.step,
+        correct_every: run.correct_every,
+        method: None,
+        integrator: run.integrator,
+        tolerance: run.tolerance,
+        coordinates: run.coordinates,
+        correction: run.correction,
+        correct_when: None,
+        budget: run.budget,
+        verify: false,
+        linearize: None,
+        precision: Precision::F64,
+        every: run.every,
+        set: Vec::new(),
+        input: Vec::new(),
+        strict: false,
+        out: None,
+        json: false,
+    }
+}

@@ -1,0 +1,149 @@
+//! What a model has that a study can name: the names are those of the columns of `simulate`.
+
+use crate::columns::{coordinates, outputs};
+use crate::scene::observed;
+use gyro_model::{CoordinateKind, Model, to_f64};
+use gyro_sweep::study::{Named, Vocabulary};
+use gyro_sweep::{Quantity, Target};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+pub(super) fn vocabulary(model: &Model) -> Vocabulary {
+    let valued = |all: &[gyro_model::Parameter]| {
+        all.iter().map(|one| (one.name.clone(), to_f64(&one.value))).collect::<Vec<_>>()
+    };
+    let mut words = Vocabulary {
+        parameters: valued(&model.parameters),
+        inputs: valued(&model.inputs),
+        ..Vocabulary::default()
+    };
+    for (index, shown) in coordinates(model).iter().enumerate() {
+        let name = &shown.name;
+        let Some(kind) = shown.kind else {
+            words.keep_all(name, " e", "1", 0..4, |k| Quantity::Orientation(index, k));
+            words.keep_all(name, " rate ", "rad/s", 0..3, |k| Quantity::OrientationRate(index, k));
+            continue;
+        };
+        let rate = format!("{name} rate");
+        words.keep(name.clone(), shown.unit(), Quantity::Position(index));
+        words.keep(rate.clone(), shown.rate_unit(), Quantity::Rate(index));
+        let of = model.joints[shown.joint].kind.coordinates();
+        let place = of.iter().position(|other: &CoordinateKind| *other == kind).unwrap_or(0);
+        words.start(name.clone(), shown.unit(), Target::Start(shown.joint, place));
+        words.start(rate, shown.rate_unit(), Target::StartRate(shown.joint, place));
+    }
+    for (index, (name, unit)) in outputs(model).into_iter().enumerate() {
+        words.keep(name, if unit.is_empty() { "1" } else { unit }, Quantity::Output(index));
+    }
+    for (index, (_, name)) in observed(model).iter().enumerate() {
+        words.keep_all(name, " ", "m", 0..3, |k| Quantity::Pose(index, k));
+        words.keep_all(name, " e", "1", 0..4, |k| Quantity::Pose(index, 3 + k));
+        words.keep_all(name, " velocity ", "m/s", 0..3, |k| Quantity::Velocity(index, k));
+        words.keep_all(name, " angular velocity ", "rad/s", 0..3, |k| Quantity::Velocity(index, 3 + k));
+    }
+    words.keep("kinetic energy".to_owned(), "J", Quantity::Kinetic);
+    words.keep("potential energy".to_owned(), "J", Quantity::Potential);
+    words.keep("energy".to_owned(), "J", Quantity::Energy);
+    if model.has_work() {
+        words.keep("work".to_owned(), "J", Quantity::Work);
+    }
+    words.keep("constraint violation".to_owned(), "1", Quantity::Violation);
+    words
+}
+
+/// Adds names.
+trait Words {
+    fn keep(&mut self, name: String, unit: &str, of: Quantity);
+    fn start(&mut self, name: String, unit: &str, of: Target);
+
+    /// Components, numbered where their name is one letter and a number, otherwise by axes.
+    fn keep_all(
+        &mut self,
+        name: &str,
+        part: &str,
+        unit: &str,
+        components: std::ops::Range<usize>,
+        of: impl Fn(usize) -> Quantity,
+    ) {
+        let prime = if part == " angular velocity " { "'" } else { "" };
+        for k in components {
+            let name = if part == " e" {
+                format!("{name}{part}{k}")
+            } else {
+                format!("{name}{part}{}{prime}", AXES[k])
+            };
+            self.keep(name, unit, of(k));
+        }
+    }
+}
+
+impl Words for Vocabulary {
+    fn keep(&mut self, name: String, unit: &str, of: Quantity) {
+        self.columns.push(Named { name, unit: unit.to_owned(), of });
+    }
+
+    fn start(&mut self, name: String, unit: &str, of: Target) {
+        self.starts.push(Named { name, unit: unit.to_owned(), of });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::{Column, columns};
+    use gyro_runner::{BodySample, JointSample, Sample};
+
+    /// A sample whose numbers all differ, and for each column its number: names and quantities belong together.
+    #[test]
+    fn names_are_those_of_the_table_and_mean_the_same() {
+        for name in ["free-body", "spinning-top", "slider-crank", "gyroscope-coulomb"] {
+            let path = crate::files::root().join("models").join(format!("{name}.toml"));
+            let model = crate::scene::read_counting_work(&path).unwrap();
+            let mut next = 0.0;
+            let mut number = || {
+                next += 1.0;
+                next
+            };
+            let coordinates = coordinates(&model);
+            let coordinates = coordinates.iter().map(|shown| match shown.kind {
+                None => JointSample::Orientation {
+                    position: [0; 4].map(|_| number()),
+                    rate: [0; 3].map(|_| number()),
+                },
+                Some(kind) if kind.is_angle() => JointSample::Angle { position: number(), rate: number() },
+                Some(_) => JointSample::Length { position: number(), rate: number() },
+            });
+            let coordinates = coordinates.collect();
+            let outputs = outputs(&model).iter().map(|_| number()).collect();
+            let body = |number: &mut dyn FnMut() -> f64| BodySample {
+                pose: [0; 7].map(|_| number()),
+                velocity: [0; 6].map(|_| number()),
+            };
+            let bodies = observed(&model).iter().map(|_| body(&mut number)).collect();
+            let [kinetic, potential, work, position_violation] = [0; 4].map(|_| number());
+            let sample = Sample {
+                coordinates,
+                outputs,
+                bodies,
+                kinetic,
+                potential,
+                work,
+                position_violation,
+                ..Sample::default()
+            };
+            let table = columns(&model, &[], std::slice::from_ref(&sample));
+            let left_out = ["t", "energy error", "velocity violation", "norm violation", "chart switches"];
+            let is_shown = |column: &&Column| {
+                !left_out.contains(&column.name.as_str())
+                    && model.inputs.iter().all(|i| i.name != column.name)
+            };
+            let expected: Vec<_> = table.iter().filter(is_shown).collect();
+            let found = vocabulary(&model).columns;
+            assert_eq!(found.len(), expected.len(), "{name}");
+            for (found, expected) in found.iter().zip(expected) {
+                assert_eq!((&found.name, &found.unit[..]), (&expected.name, expected.unit), "{name}");
+                assert_eq!(found.of.of(&sample), expected.values[0], "{name}: {}", found.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! Programs that run blocks, one for each core, and the order that their answers are brought into.
+
+use crate::failure::Failure;
+use crate::sweep::starts;
+use gyro_model::Model;
+use gyro_runner::Start;
+use gyro_runner::protocol::write;
+use gyro_sweep::Source;
+use gyro_sweep::child::{Job, Unit};
+use gyro_sweep::record;
+use std::collections::BTreeMap;
+use std::io::BufReader;
+use std::num::NonZeroUsize;
+use std::ops::Range;
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::mpsc;
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::thread;
+use std::time::Instant;
+
+/// Who runs a study.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Workers<'a> {
+    pub(super) program: &'a Path,
+    pub(super) job: &'a Job,
+    /// The model that each scenario's start is assembled of; none where all start alike.
+    pub(super) assembled: Option<&'a Model>,
+    pub(super) threads: NonZeroUsize,
+}
+
+/// How long a program is left alone with its blocks, s.
+const UNIT: f64 = 0.2;
+
+/// Blocks, for each program, that may be under way or wait for an earlier one.
+const AHEAD: u64 = 256;
+
+/// Which blocks are under way.
+#[derive(Debug)]
+pub(super) struct Queue {
+    /// The next to be handed out.
+    next: u64,
+    end: u64,
+    /// The first that is not written yet.
+    written: u64,
+    is_stopped: bool,
+    /// How many programs there are.
+    programs: u64,
+}
+
+impl Queue {
+    pub(super) fn new(places: &Range<u64>, programs: u64) -> Self {
+        Self { next: places.start, end: places.end, written: places.start, is_stopped: false, programs }
+    }
+
+    /// Whether nothing is handed out any more.
+    fn is_over(&self) -> bool {
+        self.is_stopped || self.next >= self.end
+    }
+
+    /// Whether so much waits for an earlier block that nothing is handed out for now.
+    fn is_full(&self) -> bool {
+        self.next >= self.written + AHEAD * self.programs
+    }
+
+    /// Hands out the next places, if there are any to be handed out now.
+    pub(super) fn give(&mut self, at_once: u64) -> Option<Range<u64>> {
+        if self.is_over() || self.is_full() {
+            return None;
+        }
+        // Towards the end all have something to do.
+        let share = (self.end - self.next).div_ceil(2 * self.programs);
+        let first = self.next;
+        self.next += at_once.min(share).max(1);
+        Some(first..self.next)
+    }
+}
+
+/// The queue, and who waits for blocks to be written.
+pub(super) type Shared = (Mutex<Queue>, Condvar);
+
+/// Blocks by their place in the order, and what came of them.
+pub(super) type Answer = Result<(u64, Vec<u8>), Failure>;
+
+impl Workers<'_> {
+    /// Runs the blocks at these places of an order, of which `block` says the numbers; hands their records to `keep`
+    /// one after the other.
+    ///
+    /// # Errors
+    /// Of a program, or of `keep`.
+    pub(super) fn run(
+        &self,
+        places: Range<u64>,
+        block: impl Fn(u64) -> u64 + Sync,
+        mut keep: impl FnMut(Vec<u8>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let threads = (self.threads.get() as u64).min(places.end - places.start);
+        let shared = (Mutex::new(Queue::new(&places, threads)), Condvar::new());
+        thread::scope(|scope| {
+            let (sender, answers) = mpsc::channel();
+            for _ in 0..threads {
+                let (sender, shared, block) = (sender.clone(), &shared, &block);
+                scope.spawn(move || {
+                    let send = |place, bytes| sender.send(Ok((place, bytes))).is_ok();
+                    if let Err(failure) = self.work(|at_once| take(shared, at_once), block, send) {
+                        // Nobody listens any more after another failure.
+                        let _ = sender.send(Err(failure));
+                    }
+                });
+            }
+            drop(sender);
+            let outcome = in_order(&shared, answers.into_iter(), &mut keep);
+            lock(&shared.0).is_stopped = true;
+            shared.1.notify_all();
+            outcome
+        })
+    }
+
+    /// Runs the places that `take` gives, which is told how many are wanted at once, until there are no more or nobody
+    /// takes their records.
+    ///
+    /// # Errors
+    /// Of the program.
+    pub(super) fn work(
+        &self,
+        mut take: impl FnMut(u64) -> Option<Range<u64>>,
+        block: impl Fn(u64) -> u64,
+        mut send: impl FnMut(u64, Vec<u8>) -> bool,
+    ) -> Result<(), Failure> {
+        let mut worker = Worker::open(self.program, self.job)?;
+        let mut source = Source::new(&self.job.plan);
+        let mut at_once = 1;
+        while let Some(places) = take(at_once) {
+            let began = Instant::now();
+            let blocks: Vec<u64> = places.clone().map(&block).collect();
+            let starts = self.starts(&blocks, &mut source);
+            worker.ask(&Unit { blocks, starts })?;
+            for place in places.clone() {
+                if !send(place, worker.hear()?) {
+                    return Ok(());
+                }
+            }
+            #[expect(clippy::cast_precision_loss, reason = "a number of blocks")]
+            let each = began.elapsed().as_secs_f64() / (places.end - places.start) as f64;
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it saturates")]
+            let fitting = (UNIT / each) as u64;
+            at_once = fitting.clamp(1, AHEAD / 4);
+        }
+        Ok(())
+    }
+
+    /// Where the scenarios of these blocks start, unless all start alike.
+    fn starts(&self, blocks: &[u64], source: &mut Source<'_>) -> Vec<Result<Start, String>> {
+        let Some(model) = self.assembled else { return Vec::new() };
+        let targets = &self.job.plan.targets;
+        let scenarios = blocks.iter().flat_map(|block| {
+            let (first, count) = self.job.range(*block);
+            first..first + u64::from(count)
+        });
+        let mut values = vec![0.0; targets.len()];
+        let start = |k| {
+            source.write(k, &mut values);
+            starts::assembled(model, targets, &values)
+        };
+        scenarios.map(start).collect()
+    }
+}
+
+/// The next places, once there is room for what comes of them.
+fn take((queue, written): &Shared, at_once: u64) -> Option<Range<u64>> {
+    let mut queue = lock(queue);
+    while !queue.is_over() && queue.is_full() {
+        queue = written.wait(queue).unwrap_or_else(PoisonError::into_inner);
+    }
+    queue.give(at_once)
+}
+
+pub(super) fn lock(queue: &Mutex<Queue>) -> std::sync::MutexGuard<'_, Queue> {
+    queue.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Hands on what comes, in its order.
+pub(super) fn in_order(
+    (queue, written): &Shared,
+    answers: impl Iterator<Item = Answer>,
+    mut keep: impl FnMut(Vec<u8>) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let mut waiting = BTreeMap::new();
+    let mut next = lock(queue).written;
+    for answer in answers {
+        let (place, bytes) = answer?;
+        waiting.insert(place, bytes);
+        while let Some(bytes) = waiting.remove(&next) {
+            keep(bytes)?;
+            next += 1;
+        }
+        lock(queue).written = next;
+        written.notify_all();
+    }
+    Ok(())
+}
+
+/// A program under way.
+#[derive(Debug)]
+struct Worker {
+    child: Child,
+    input: ChildStdin,
+    output: BufReader<ChildStdout>,
+}
+
+impl Worker {
+    fn open(program: &Path, job: &Job) -> Result<Self, Failure> {
+        let failed = |error: std::io::Error| Failure::Run(format!("{}: {error}", program.display()));
+        let mut command = Command::new(program);
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(failed)?;
+        let input = child.stdin.take().expect("standard input is piped");
+        let output =
+            BufReader::with_capacity(1 << 16, child.stdout.take().expect("standard output is piped"));
+        let mut worker = Self { child, input, output };
+        write(&mut worker.input, job).map_err(failed)?;
+        Ok(worker)
+    }
+
+    fn ask(&mut self, unit: &Unit) -> Result<(), Failure> {
+        write(&mut self.input, unit).map_err(|error| self.ended(&error.to_string()))
+    }
+
+    fn hear(&mut self) -> Result<Vec<u8>, Failure> {
+        match record::next(&mut self.output) {
+            Ok(Some(bytes)) => Ok(bytes),
+            Ok(None) => Err(self.ended("no answer")),
+            Err(error) => Err(self.ended(&error.to_string())),
+        }
+    }
+
+    fn ended(&mut self, words: &str) -> Failure {
+        let _ = self.child.kill();
+        let status = self.child.wait().map_or_else(|e| e.to_string(), |status| status.to_string());
+        Failure::Run(format!(
+            "the program that runs scenarios has ended: {words} ({status}); --resume goes on"
+        ))
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

@@ -1,0 +1,212 @@
+//! Kernels as tapes: operations on numbers in their order, each once, with loops over tables of constants.
+//!
+//! Whatever a kernel becomes, Rust text or machine code, is made from its tape, operation for operation: what becomes
+//! one operation with what (`a b + c`, `a / b`) is decided here, and nowhere else.
+
+mod build;
+
+use crate::expr::constant::Constant;
+use crate::expr::symbol::Symbol;
+use crate::repeat::Local;
+
+pub use crate::repeat::{Direction, Shape};
+pub(crate) use build::{looped, straight};
+
+/// A number of a tape, by the place of the operation that gives it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Place(pub u32);
+
+/// One operation. Operands come before it.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the operations are what they are called")]
+pub enum Operation<V, C> {
+    Constant(C),
+    Variable(V),
+    Add(Place, Place),
+    Subtract(Place, Place),
+    Multiply(Place, Place),
+    Divide(Place, Place),
+    Negate(Place),
+    /// `a b + c`: rounded once where the run time fuses, else twice.
+    Fused(Place, Place, Place),
+    Sqrt(Place),
+    Sin(Place),
+    Cos(Place),
+    Tanh(Place),
+    /// The angle of the point (second operand, first operand).
+    Atan2(Place, Place),
+}
+
+/// Straight-line operations on variables `V` and constants `C`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tape<V, C> {
+    /// The operations, operands first.
+    pub operations: Vec<Operation<V, C>>,
+    /// Those that have a name in the text of a module, in the order of their numbers.
+    pub(crate) named: Vec<Place>,
+}
+
+/// A loop: its body is done for each part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loop<V, C> {
+    /// How many of the operations outside of loops come before it.
+    pub after: usize,
+    /// Those of them that have a name and come after the loop before.
+    pub(crate) named: Vec<Place>,
+    /// Numbers that its body reads and that are the same for all parts; numbered on from those of the loops before.
+    pub fixed: Vec<Place>,
+    /// Array, row and column, and what is stored there before the loop begins.
+    pub stores: Vec<([usize; 3], Place)>,
+    /// In which order the parts are done.
+    pub direction: Direction,
+    /// How many parts there are.
+    pub count: usize,
+    /// Constants, a row for each part.
+    pub table: Vec<Vec<C>>,
+    /// What [`Symbol::Local`] stands for in its body.
+    pub(crate) locals: Vec<Local>,
+    /// What is done for a part.
+    pub body: Tape<V, C>,
+    /// The numbers of the body that are stored in a row of an array.
+    pub values: Vec<Place>,
+    /// That array.
+    pub array: usize,
+    /// Its row, so many after that of the part's number.
+    pub offset: usize,
+}
+
+/// A kernel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kernel<V, C> {
+    /// What is done outside of loops.
+    pub outside: Tape<V, C>,
+    /// The arrays that hand numbers from loop to loop. What is read of them was stored before.
+    pub arrays: Vec<Shape>,
+    /// The loops, in their order; most kernels have none.
+    pub loops: Vec<Loop<V, C>>,
+    /// What has a name and comes after all loops.
+    pub(crate) rest: Vec<Place>,
+    /// What the kernel gives.
+    pub results: Vec<Place>,
+}
+
+/// A tape as the generator has it.
+pub(crate) type Exact = Tape<Symbol, Constant>;
+
+impl<V, C> Operation<V, C> {
+    /// The operands.
+    pub fn operands(&self) -> impl Iterator<Item = Place> + use<V, C> {
+        let (a, b, c) = match *self {
+            Self::Constant(_) | Self::Variable(_) => (None, None, None),
+            Self::Negate(a) | Self::Sqrt(a) | Self::Sin(a) | Self::Cos(a) | Self::Tanh(a) => {
+                (Some(a), None, None)
+            }
+            Self::Add(a, b)
+            | Self::Subtract(a, b)
+            | Self::Multiply(a, b)
+            | Self::Divide(a, b)
+            | Self::Atan2(a, b) => (Some(a), Some(b), None),
+            Self::Fused(a, b, c) => (Some(a), Some(b), Some(c)),
+        };
+        a.into_iter().chain(b).chain(c)
+    }
+
+    fn map<W, D>(
+        &self,
+        variable: &mut impl FnMut(&V) -> W,
+        constant: &mut impl FnMut(&C) -> D,
+    ) -> Operation<W, D> {
+        match self {
+            Self::Constant(value) => Operation::Constant(constant(value)),
+            Self::Variable(of) => Operation::Variable(variable(of)),
+            Self::Add(a, b) => Operation::Add(*a, *b),
+            Self::Subtract(a, b) => Operation::Subtract(*a, *b),
+            Self::Multiply(a, b) => Operation::Multiply(*a, *b),
+            Self::Divide(a, b) => Operation::Divide(*a, *b),
+            Self::Negate(a) => Operation::Negate(*a),
+            Self::Fused(a, b, c) => Operation::Fused(*a, *b, *c),
+            Self::Sqrt(a) => Operation::Sqrt(*a),
+            Self::Sin(a) => Operation::Sin(*a),
+            Self::Cos(a) => Operation::Cos(*a),
+            Self::Tanh(a) => Operation::Tanh(*a),
+            Self::Atan2(y, x) => Operation::Atan2(*y, *x),
+        }
+    }
+}
+
+impl<V, C> Tape<V, C> {
+    /// The operation that gives a number.
+    pub fn operation(&self, place: Place) -> &Operation<V, C> {
+        &self.operations[place.0 as usize]
+    }
+
+    /// The variables that it reads, as often as it reads them.
+    pub fn variables(&self) -> impl Iterator<Item = &V> {
+        self.operations.iter().filter_map(|operation| match operation {
+            Operation::Variable(variable) => Some(variable),
+            _ => None,
+        })
+    }
+
+    /// The same on other variables and constants.
+    pub(crate) fn map<W, D>(
+        &self,
+        mut variable: impl FnMut(&V) -> W,
+        mut constant: impl FnMut(&C) -> D,
+    ) -> Tape<W, D> {
+        let operations = self.operations.iter().map(|operation| operation.map(&mut variable, &mut constant));
+        Tape { operations: operations.collect(), named: self.named.clone() }
+    }
+}
+
+impl Kernel<Symbol, Constant> {
+    /// The same with constants rounded to the nearest `f64`, on other variables: those outside of loops, and those of
+    /// the body of a loop, with what its symbols stand for.
+    pub(crate) fn map<W>(
+        &self,
+        outside: impl Fn(&Symbol) -> W,
+        inside: impl Fn(&[Local], &Symbol) -> W,
+    ) -> Kernel<W, f64> {
+        let round = |row: &Vec<Constant>| row.iter().map(Constant::to_f64).collect();
+        let loops = self.loops.iter().map(|each| Loop {
+            after: each.after,
+            named: each.named.clone(),
+            fixed: each.fixed.clone(),
+            stores: each.stores.clone(),
+            direction: each.direction,
+            count: each.count,
+            table: each.table.iter().map(round).collect(),
+            locals: each.locals.clone(),
+            body: each.body.map(|symbol| inside(&each.locals, symbol), Constant::to_f64),
+            values: each.values.clone(),
+            array: each.array,
+            offset: each.offset,
+        });
+        Kernel {
+            loops: loops.collect(),
+            outside: self.outside.map(outside, Constant::to_f64),
+            arrays: self.arrays.clone(),
+            rest: self.rest.clone(),
+            results: self.results.clone(),
+        }
+    }
+}
+
+impl<V, C> Kernel<V, C> {
+    /// What has a name and is computed before each loop, and after all of them.
+    pub(crate) fn parts(&self) -> Vec<Vec<Place>> {
+        self.loops.iter().map(|each| each.named.clone()).chain([self.rest.clone()]).collect()
+    }
+
+    /// What is read outside of its tape's own operations: by loops, and as results.
+    pub(crate) fn roots(&self) -> Vec<Place> {
+        self.loops.iter().flat_map(Loop::roots).chain(self.results.iter().copied()).collect()
+    }
+}
+
+impl<V, C> Loop<V, C> {
+    /// What is computed for it.
+    pub(crate) fn roots(&self) -> impl Iterator<Item = Place> {
+        self.fixed.iter().copied().chain(self.stores.iter().map(|(_, value)| *value))
+    }
+}

@@ -1,0 +1,399 @@
+//! Kernels as Cranelift functions.
+//!
+//! A function takes the time and six addresses, in the order of [`ARRAYS`], and returns nothing. Straight-line kernels
+//! are one block; a loop has a block for its condition and one for its body, with the number of the part (and what is
+//! left to do) as a parameter. What Cranelift may do with floating-point operations keeps their bits.
+
+use crate::engine::{Array, Layout, Shape};
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{
+    AbiParam, Block, FuncRef, InstBuilder, MemFlagsData, Signature, StackSlot, StackSlotData, StackSlotKind,
+    Type, Value, types,
+};
+use cranelift_codegen::isa::CallConv;
+use cranelift_frontend::FunctionBuilder;
+use gyro_codegen::tape::{Direction, Loop, Operation, Place, Tape};
+use gyro_codegen::{ScheduledKernel, Variable};
+use gyro_sim::fused::IS_FUSED;
+
+/// The arrays that a function is given, in the order of its arguments after the time.
+pub(crate) const ARRAYS: [Array; 6] =
+    [Array::State, Array::Given, Array::Own, Array::Tables, Array::Work, Array::Out];
+
+/// The elementary functions that are called, in the order of [`Writer::functions`].
+pub(crate) const FUNCTIONS: [&str; 4] = ["sin", "cos", "tanh", "atan2"];
+
+/// A number type of machine code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Width {
+    Single,
+    Double,
+    /// Two lanes of doubles. What has no machine instruction for them takes them by their address.
+    Pair,
+}
+
+impl Width {
+    pub(crate) fn ty(self) -> Type {
+        match self {
+            Self::Single => types::F32,
+            Self::Double => types::F64,
+            Self::Pair => types::F64X2,
+        }
+    }
+
+    /// Bytes of so many numbers.
+    fn bytes(self, n: usize) -> i32 {
+        i32::try_from(n * self.ty().bytes() as usize).expect("buffers are smaller than 2 GB")
+    }
+
+    /// Signature of a kernel.
+    pub(crate) fn of_kernel(self, call_conv: CallConv, pointer: Type) -> Signature {
+        let mut signature = Signature::new(call_conv);
+        signature.params.push(AbiParam::new(if self == Self::Pair { pointer } else { self.ty() }));
+        signature.params.extend(ARRAYS.map(|_| AbiParam::new(pointer)));
+        signature
+    }
+
+    /// Signature of an elementary function.
+    pub(crate) fn of_function(self, call_conv: CallConv, pointer: Type, name: &str) -> Signature {
+        let mut signature = Signature::new(call_conv);
+        if self == Self::Pair {
+            signature.params.push(AbiParam::new(pointer));
+            return signature;
+        }
+        let n = if name == "atan2" { 2 } else { 1 };
+        signature.params.extend((0..n).map(|_| AbiParam::new(self.ty())));
+        signature.returns.push(AbiParam::new(self.ty()));
+        signature
+    }
+}
+
+/// Writes a kernel into a function.
+pub(crate) struct Writer<'w, 'f> {
+    pub(crate) builder: &'w mut FunctionBuilder<'f>,
+    pub(crate) width: Width,
+    pub(crate) layout: Layout,
+    pub(crate) shape: &'w Shape,
+    /// Where the tables of each loop begin.
+    pub(crate) tables: &'w [usize],
+    pub(crate) functions: [FuncRef; 4],
+    pub(crate) pointer: Type,
+    /// How much of each array is read or written.
+    pub(crate) reach: [usize; 6],
+    /// Addresses of what strides through arrays, of the part of a loop that is written.
+    pub(crate) strides: Vec<((Array, usize), Value)>,
+    /// Where arguments stand that are taken by their address.
+    pub(crate) slot: Option<StackSlot>,
+}
+
+/// What is known while a function is written.
+struct Known {
+    time: Value,
+    arrays: [Value; 6],
+    fixed: Vec<Value>,
+}
+
+/// The part of a loop that is done: its number, and the loop's columns and the place of its table.
+#[derive(Clone, Copy)]
+struct Part {
+    number: Value,
+    count: usize,
+    table: usize,
+    columns: usize,
+}
+
+/// A tape with its signs that differences take: those of no use to any other operation or to what it gives.
+struct Line<'t> {
+    tape: &'t Tape<Variable, f64>,
+    is_taken: Vec<bool>,
+}
+
+impl<'t> Line<'t> {
+    fn new<'g>(tape: &'t Tape<Variable, f64>, given: impl Iterator<Item = &'g Place>) -> Self {
+        let is_sign = |operation: &Operation<_, _>| !IS_FUSED && matches!(operation, Operation::Negate(_));
+        let mut is_taken: Vec<bool> = tape.operations.iter().map(is_sign).collect();
+        let mut stays = |place: Place| is_taken[place.0 as usize] = false;
+        given.copied().for_each(&mut stays);
+        for operation in &tape.operations {
+            match *operation {
+                Operation::Fused(a, b, c) => {
+                    stays(b);
+                    if negated(tape, a).is_some() {
+                        stays(c);
+                    }
+                }
+                ref other => other.operands().for_each(&mut stays),
+            }
+        }
+        Self { tape, is_taken }
+    }
+}
+
+impl Writer<'_, '_> {
+    /// Writes the whole function.
+    pub(crate) fn write(&mut self, kernel: &ScheduledKernel) {
+        let entry = self.builder.create_block();
+        self.builder.append_block_params_for_function_params(entry);
+        self.builder.switch_to_block(entry);
+        let parameters = self.builder.block_params(entry).to_vec();
+        let arrays = std::array::from_fn(|n| parameters[n + 1]);
+        let time = if self.width == Width::Pair { self.load(parameters[0], 0) } else { parameters[0] };
+        let mut known = Known { time, arrays, fixed: Vec::new() };
+        let tape = &kernel.tape;
+        let of_loops = tape
+            .loops
+            .iter()
+            .flat_map(|each| each.fixed.iter().chain(each.stores.iter().map(|(_, value)| value)));
+        let outside = Line::new(&tape.outside, of_loops.chain(&tape.results));
+        let mut values: Vec<Value> = Vec::with_capacity(tape.outside.operations.len());
+        for (number, each) in tape.loops.iter().enumerate() {
+            self.operations(&known, &outside, (each.after, None), &mut values);
+            known.fixed.extend(each.fixed.iter().map(|place| values[place.0 as usize]));
+            for &([array, row, column], value) in &each.stores {
+                let place = self.shape.kept(array, row, column);
+                self.store(&known, (Array::Work, place), values[value.0 as usize]);
+            }
+            self.repeat(&known, each, self.tables[number]);
+        }
+        self.results(&known, kernel, &outside, &mut values);
+        self.builder.ins().return_(&[]);
+    }
+
+    /// Does what is left to do. Each result is stored as soon as it is known, which leaves its register to others, but
+    /// where results take the place of what is read.
+    fn results(
+        &mut self,
+        known: &Known,
+        kernel: &ScheduledKernel,
+        outside: &Line<'_>,
+        values: &mut Vec<Value>,
+    ) {
+        let mut results: Vec<(usize, Place)> = kernel.tape.results.iter().copied().enumerate().collect();
+        if self.shape.is_overwritten() {
+            self.operations(known, outside, (outside.tape.operations.len(), None), values);
+        } else {
+            results.sort_by_key(|(_, place)| *place);
+        }
+        for (n, result) in results {
+            self.operations(known, outside, (result.0 as usize + 1, None), values);
+            let place = kernel.places.get(n).copied().unwrap_or(n);
+            self.store(known, (Array::Out, place), values[result.0 as usize]);
+        }
+    }
+
+    /// A block with the condition, one with the body, and one for what follows.
+    fn repeat(&mut self, known: &Known, each: &Loop<Variable, f64>, table: usize) {
+        let [condition, body, after] = [(); 3].map(|()| self.builder.create_block());
+        let number = self.builder.append_block_param(condition, self.pointer);
+        let (first, end, step) = match each.direction {
+            Direction::Forward => (0, each.count as i64, 1),
+            Direction::Backward => (each.count as i64 - 1, -1, -1),
+        };
+        let first = self.builder.ins().iconst(self.pointer, first);
+        self.jump(condition, first);
+        self.builder.switch_to_block(condition);
+        let is_done = self.builder.ins().icmp_imm_s(IntCC::Equal, number, end);
+        self.builder.ins().brif(is_done, after, &[], body, &[]);
+        self.builder.switch_to_block(body);
+        self.strides.clear();
+        let part = Part { number, count: each.count, table, columns: each.table.first().map_or(0, Vec::len) };
+        let mut values = Vec::with_capacity(each.body.operations.len());
+        let n = each.body.operations.len();
+        self.operations(known, &Line::new(&each.body, each.values.iter()), (n, Some(part)), &mut values);
+        let row = self.shape.kept(each.array, each.offset, 0);
+        let stride = self.shape.columns(each.array);
+        let base = self.strided(known, Array::Work, (number, stride));
+        self.reaches(Array::Work, row + stride * each.count);
+        for (column, value) in each.values.iter().enumerate() {
+            let (value, offset) = (values[value.0 as usize], self.width.bytes(row + column));
+            self.builder.ins().store(MemFlagsData::trusted(), value, base, offset);
+        }
+        let next = self.builder.ins().iadd_imm_s(number, step);
+        self.jump(condition, next);
+        self.builder.switch_to_block(after);
+    }
+
+    fn jump(&mut self, to: Block, number: Value) {
+        self.builder.ins().jump(to, &[number.into()]);
+    }
+
+    /// Does the operations of a tape that are not yet done, up to one of them.
+    fn operations(
+        &mut self,
+        known: &Known,
+        line: &Line<'_>,
+        (end, part): (usize, Option<Part>),
+        values: &mut Vec<Value>,
+    ) {
+        for place in values.len()..end {
+            let value = match line.tape.operations[place] {
+                // Nobody reads it.
+                Operation::Negate(of) if line.is_taken[place] => values[of.0 as usize],
+                ref operation => self.operation(known, (line.tape, operation), part, values),
+            };
+            values.push(value);
+        }
+    }
+
+    fn operation(
+        &mut self,
+        known: &Known,
+        (tape, operation): (&Tape<Variable, f64>, &Operation<Variable, f64>),
+        part: Option<Part>,
+        values: &[Value],
+    ) -> Value {
+        let at = |place: &Place| values[place.0 as usize];
+        match operation {
+            Operation::Constant(value) => self.constant(*value),
+            Operation::Variable(variable) => self.variable(known, *variable, part),
+            Operation::Add(a, b) => {
+                let [a, b] = second_constant(tape, [*a, *b]).map(|place| at(&place));
+                self.builder.ins().fadd(a, b)
+            }
+            Operation::Subtract(a, b) => self.builder.ins().fsub(at(a), at(b)),
+            Operation::Multiply(a, b) => self.product(tape, (*a, *b), values),
+            Operation::Divide(a, b) => self.builder.ins().fdiv(at(a), at(b)),
+            Operation::Negate(a) => self.builder.ins().fneg(at(a)),
+            Operation::Fused(a, b, c) if IS_FUSED => self.builder.ins().fma(at(a), at(b), at(c)),
+            Operation::Fused(a, b, c) => self.rounded_twice(tape, [*a, *b, *c], values),
+            Operation::Sqrt(a) => self.builder.ins().sqrt(at(a)),
+            Operation::Sin(a) => self.call(0, &[at(a)]),
+            Operation::Cos(a) => self.call(1, &[at(a)]),
+            Operation::Tanh(a) => self.call(2, &[at(a)]),
+            Operation::Atan2(y, x) => self.call(3, &[at(y), at(x)]),
+        }
+    }
+
+    /// A product.
+    fn product(&mut self, tape: &Tape<Variable, f64>, (a, b): (Place, Place), values: &[Value]) -> Value {
+        let [a, b] = second_constant(tape, [a, b]).map(|place| values[place.0 as usize]);
+        self.builder.ins().fmul(a, b)
+    }
+
+    /// `a b + c` with two roundings. A sign of `a`, or of `c`, makes it a difference, which rounds alike.
+    fn rounded_twice(
+        &mut self,
+        tape: &Tape<Variable, f64>,
+        [a, b, c]: [Place; 3],
+        values: &[Value],
+    ) -> Value {
+        let at = |place: Place| values[place.0 as usize];
+        let (without, of_c) = (negated(tape, a), negated(tape, c));
+        let product = self.product(tape, (without.unwrap_or(a), b), values);
+        match (without, of_c) {
+            (Some(_), _) => self.builder.ins().fsub(at(c), product),
+            (None, Some(c)) => self.builder.ins().fsub(product, at(c)),
+            (None, None) => self.builder.ins().fadd(product, at(c)),
+        }
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is what is meant")]
+    fn constant(&mut self, value: f64) -> Value {
+        match self.width {
+            Width::Single => self.builder.ins().f32const(value as f32),
+            Width::Double => self.builder.ins().f64const(value),
+            Width::Pair => {
+                let lane = self.builder.ins().f64const(value);
+                self.builder.ins().splat(types::F64X2, lane)
+            }
+        }
+    }
+
+    fn call(&mut self, function: usize, arguments: &[Value]) -> Value {
+        if self.width == Width::Pair {
+            return self.call_by_address(function, arguments);
+        }
+        let call = self.builder.ins().call(self.functions[function], arguments);
+        self.builder.inst_results(call)[0]
+    }
+
+    /// The arguments are in memory, and the result then is in place of the first.
+    fn call_by_address(&mut self, function: usize, arguments: &[Value]) -> Value {
+        let slot = *self.slot.get_or_insert_with(|| {
+            let pairs = StackSlotData::new(StackSlotKind::ExplicitSlot, 2 * types::F64X2.bytes(), 4);
+            self.builder.create_sized_stack_slot(pairs)
+        });
+        for (n, argument) in arguments.iter().enumerate() {
+            self.builder.ins().stack_store(self.pointer, *argument, slot, self.width.bytes(n));
+        }
+        let address = self.builder.ins().stack_addr(self.pointer, slot, 0);
+        self.builder.ins().call(self.functions[function], &[address]);
+        self.builder.ins().stack_load(self.pointer, self.width.ty(), slot, 0)
+    }
+
+    fn variable(&mut self, known: &Known, variable: Variable, part: Option<Part>) -> Value {
+        let (array, place, stride) = match (variable, part) {
+            (Variable::Time, _) => return known.time,
+            (Variable::Fixed(place), _) => return known.fixed[place],
+            (Variable::Factor(column), Some(part)) => (Array::Tables, part.table + column, part.columns),
+            (Variable::Row { array, offset, column }, Some(_)) => {
+                (Array::Work, self.shape.kept(array, offset, column), self.shape.columns(array))
+            }
+            (Variable::Strided { argument, first, stride }, Some(_)) => {
+                (self.shape.array(argument), first, stride)
+            }
+            (other, _) => {
+                let (array, place) = self.layout.place(self.shape, other).expect("it is outside of loops");
+                self.reaches(array, place + 1);
+                return self.load(known.array(array), place);
+            }
+        };
+        let Part { number, count, .. } = part.expect("it is read in a loop");
+        self.reaches(array, place + stride * count.saturating_sub(1) + 1);
+        let base = self.strided(known, array, (number, stride));
+        self.load(base, place)
+    }
+
+    /// The address of an array's element number · stride, computed once for each part.
+    fn strided(&mut self, known: &Known, array: Array, (number, stride): (Value, usize)) -> Value {
+        if let Some((_, address)) = self.strides.iter().find(|(of, _)| *of == (array, stride)) {
+            return *address;
+        }
+        let bytes = i64::from(self.width.bytes(stride));
+        let offset = self.builder.ins().imul_imm_s(number, bytes);
+        let address = self.builder.ins().iadd(known.array(array), offset);
+        self.strides.push(((array, stride), address));
+        address
+    }
+
+    fn load(&mut self, base: Value, place: usize) -> Value {
+        let offset = self.width.bytes(place);
+        self.builder.ins().load(self.width.ty(), MemFlagsData::trusted(), base, offset)
+    }
+
+    fn store(&mut self, known: &Known, (array, place): (Array, usize), value: Value) {
+        self.reaches(array, place + 1);
+        let offset = self.width.bytes(place);
+        self.builder.ins().store(MemFlagsData::trusted(), value, known.array(array), offset);
+    }
+
+    fn reaches(&mut self, array: Array, len: usize) {
+        let reach = &mut self.reach[place_of(array)];
+        *reach = len.max(*reach);
+    }
+}
+
+impl Known {
+    fn array(&self, array: Array) -> Value {
+        self.arrays[place_of(array)]
+    }
+}
+
+/// Operands in an order in which a constant comes second: processors read second operands from memory, which is where
+/// constants are.
+fn second_constant(tape: &Tape<Variable, f64>, [a, b]: [Place; 2]) -> [Place; 2] {
+    let is_constant = matches!(tape.operations[a.0 as usize], Operation::Constant(_));
+    if is_constant { [b, a] } else { [a, b] }
+}
+
+/// What a number is the negative of, if it is written so.
+fn negated(tape: &Tape<Variable, f64>, place: Place) -> Option<Place> {
+    match tape.operations[place.0 as usize] {
+        Operation::Negate(of) => Some(of),
+        _ => None,
+    }
+}
+
+fn place_of(array: Array) -> usize {
+    ARRAYS.iter().position(|other| *other == array).expect("all are given")
+}

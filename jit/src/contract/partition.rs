@@ -1,0 +1,129 @@
+//! The coordinate partition.
+
+use crate::engine::Engine;
+use crate::mechanism::InProcess;
+use gyro_codegen::Kernel;
+use gyro_sim::pivoting::{self, Choice, Extent};
+use gyro_sim::{Clearance, Error, Lanes, Partition, Real};
+
+/// Numbers of constraints and coordinates that are known at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OnHeap {
+    n_constraints: usize,
+    n_coordinates: usize,
+}
+
+impl Extent for OnHeap {
+    type Columns = Vec<u16>;
+    type Places = Vec<u16>;
+    type Rows<T: Real> = Vec<T>;
+    type Line<T: Real> = Vec<T>;
+    type Jacobian<T: Real> = Vec<Vec<T>>;
+
+    fn new(n_constraints: usize, n_coordinates: usize) -> Self {
+        Self { n_constraints, n_coordinates }
+    }
+    fn n_constraints(self) -> usize {
+        self.n_constraints
+    }
+    fn n_coordinates(self) -> usize {
+        self.n_coordinates
+    }
+    fn columns(self) -> Vec<u16> {
+        (0..self.n_coordinates).map(|column| column as u16).collect()
+    }
+    fn places(self) -> Vec<u16> {
+        vec![0; self.n_constraints]
+    }
+    fn rows<T: Real>(self) -> Vec<T> {
+        vec![T::constant(0.0); self.n_constraints]
+    }
+    fn line<T: Real>(self) -> Vec<T> {
+        vec![T::constant(0.0); self.n_coordinates]
+    }
+    fn jacobian<T: Real>(self) -> Vec<Vec<T>> {
+        vec![self.line(); self.n_constraints]
+    }
+}
+
+/// Which coordinates are independent.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Independent {
+    /// The special Euler parameter of each joint.
+    Charts(Vec<u8>),
+    /// What pivoting finds.
+    Pivots(Choice<OnHeap>),
+}
+
+impl<T: Real, E: Engine<T>> InProcess<T, E> {
+    /// Hands the four-vectors of the charts to `f`.
+    fn with_charts<R>(&self, n_charts: usize, y: &[T], f: impl FnOnce(&[[T; 4]]) -> R) -> R {
+        self.with_given(4 * n_charts, |vectors| {
+            self.fill(Kernel::ChartVectors, T::constant(0.0), y, vectors);
+            f(vectors.as_chunks::<4>().0)
+        })
+    }
+
+    /// A solve of the partition on charts.
+    fn solve(&self, kernel: Kernel, t: T, charts: &[u8], y: &mut [T]) {
+        self.with_given(4 * charts.len(), |given| {
+            for (vector, chart) in given.as_chunks_mut::<4>().0.iter_mut().zip(charts) {
+                *vector = T::one_hot(*chart);
+            }
+            self.compute(kernel, t, (&[], given), y);
+        });
+    }
+}
+
+impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
+    type Independent = Independent;
+
+    fn independent(&self, t: T, y: &Vec<T>) -> Independent {
+        let Some(n_charts) = self.scheduled().n_charts else {
+            return Independent::Pivots(pivoting::independent(self, t, y));
+        };
+        let best = |vectors: &[[T; 4]]| vectors.iter().map(T::best_chart).collect();
+        Independent::Charts(self.with_charts(n_charts, y, best))
+    }
+
+    fn follow(&self, t: T, y: &Vec<T>, choice: &mut Independent) -> u32 {
+        match choice {
+            Independent::Pivots(choice) => pivoting::follow(self, t, y, choice),
+            Independent::Charts(charts) => self.with_charts(charts.len(), y, |vectors| {
+                vectors.iter().zip(charts).map(|(vector, chart)| T::follow_chart(vector, chart)).sum()
+            }),
+        }
+    }
+
+    fn newton_step(&self, t: T, choice: &Independent, y: &mut Vec<T>) -> Result<(), Error> {
+        match choice {
+            Independent::Pivots(choice) => pivoting::newton_step(self, t, choice, y),
+            Independent::Charts(charts) => {
+                self.solve(Kernel::NewtonStep, t, charts, y);
+                Ok(())
+            }
+        }
+    }
+
+    fn is_met(&self, t: T, y: &Vec<T>, phi: &Vec<T>) -> bool {
+        self.scheduled().n_charts.is_none() && pivoting::is_met(self, t, y, phi)
+    }
+
+    fn solve_velocities(&self, t: T, choice: &Independent, y: &mut Vec<T>) -> Result<(), Error> {
+        match choice {
+            Independent::Pivots(choice) => pivoting::solve_velocities(self, t, choice, y),
+            Independent::Charts(charts) => {
+                self.solve(Kernel::SolveVelocities, t, charts, y);
+                Ok(())
+            }
+        }
+    }
+
+    fn clearance(&self, t: T, y: &Vec<T>) -> Option<Clearance<T>> {
+        let scheduled = self.scheduled();
+        // Trees have no singular poses.
+        let is_tree = scheduled.joint.as_ref().is_some_and(|joint| joint.closure_rows.is_empty());
+        let has_poses = scheduled.n_charts.is_none() && !is_tree;
+        has_poses.then(|| pivoting::clearance_in::<Self, OnHeap>(self, t, y))
+    }
+}

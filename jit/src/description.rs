@@ -1,0 +1,214 @@
+//! Names, rows and sizes of a model, built once.
+
+use gyro_codegen::JointForm;
+use gyro_model::{JointKind, Model, OutputKind, RowOwner, RowUnit};
+use gyro_sim::{Coordinate, Description, JointInfo, JointLayout, JointPlace, OutputInfo, Owner, RowInfo};
+use self_cell::self_cell;
+
+self_cell!(
+    struct Described {
+        owner: Lists,
+        #[covariant]
+        dependent: Description,
+    }
+
+    impl { Debug }
+);
+
+self_cell!(
+    struct Lists {
+        owner: Names,
+        #[covariant]
+        dependent: Borrowed,
+    }
+
+    impl { Debug }
+);
+
+/// A description with all that it refers to.
+#[derive(Debug)]
+pub(crate) struct OwnedDescription(Described);
+
+self_cell!(
+    struct Placed {
+        owner: Places,
+        #[covariant]
+        dependent: JointLayout,
+    }
+
+    impl { Debug }
+);
+
+/// A layout of joint states with all that it refers to.
+#[derive(Debug)]
+pub(crate) struct OwnedLayout(Placed);
+
+#[derive(Debug)]
+struct Places {
+    places: Vec<JointPlace>,
+    closure_rows: Vec<u16>,
+}
+
+impl OwnedLayout {
+    pub(crate) fn new(joint: &JointForm) -> Self {
+        let place = |place: &gyro_codegen::JointPlace| match *place {
+            gyro_codegen::JointPlace::Scalar { joint, coordinate } => {
+                JointPlace::Scalar { joint: narrow(joint), coordinate: narrow(coordinate) }
+            }
+            gyro_codegen::JointPlace::Orientation { joint } => {
+                JointPlace::Orientation { joint: narrow(joint) }
+            }
+            gyro_codegen::JointPlace::Body { body } => JointPlace::Body { body: narrow(body) },
+        };
+        let places = Places {
+            places: joint.places.iter().map(place).collect(),
+            closure_rows: joint.closure_rows.iter().copied().map(narrow).collect(),
+        };
+        Self(Placed::new(places, |p| JointLayout { places: &p.places, closure_rows: &p.closure_rows }))
+    }
+
+    pub(crate) fn get(&self) -> &JointLayout<'_> {
+        self.0.borrow_dependent()
+    }
+}
+
+/// What the model says.
+#[derive(Debug)]
+struct Names {
+    size: f64,
+    bodies: Vec<String>,
+    joints: Vec<(String, Vec<Coordinate>)>,
+    couplers: Vec<String>,
+    drivers: Vec<String>,
+    rows: Vec<RowInfo>,
+    has_work: bool,
+    turn_references: Vec<u16>,
+    inputs: Vec<String>,
+    outputs: Vec<(String, &'static str, &'static str)>,
+    frames: Vec<String>,
+}
+
+/// The same in the form of a [`Description`].
+#[derive(Debug)]
+struct Borrowed<'a> {
+    bodies: Vec<&'a str>,
+    joints: Vec<JointInfo<'a>>,
+    couplers: Vec<&'a str>,
+    drivers: Vec<&'a str>,
+    inputs: Vec<&'a str>,
+    outputs: Vec<OutputInfo<'a>>,
+    frames: Vec<&'a str>,
+}
+
+impl OwnedDescription {
+    pub(crate) fn new(model: &Model) -> Self {
+        let lists = Lists::new(names(model), |names| Borrowed::of(names));
+        Self(Described::new(lists, |lists| lists.describe()))
+    }
+
+    pub(crate) fn get(&self) -> &Description<'_> {
+        self.0.borrow_dependent()
+    }
+
+    /// The outputs that are frames.
+    pub(crate) fn frame_names(&self) -> &[&str] {
+        &self.0.borrow_owner().borrow_dependent().frames
+    }
+}
+
+/// A place or an index, as descriptions have them.
+pub(crate) fn narrow(index: usize) -> u16 {
+    u16::try_from(index).expect("descriptions hold up to 65536 of a kind")
+}
+
+fn names(model: &Model) -> Names {
+    let moving = model.coordinate_bodies();
+    let name = |body: &usize| model.bodies[*body].name.clone();
+    let owner = |owner: RowOwner| match owner {
+        RowOwner::Body(body) => {
+            let moving_body = moving.iter().position(|&other| other == body);
+            Owner::Body(narrow(moving_body.expect("a held body has coordinates")))
+        }
+        RowOwner::Joint(joint) => Owner::Joint(narrow(joint)),
+        RowOwner::Coupler(coupler) => Owner::Coupler(narrow(coupler)),
+        RowOwner::Driver(driver) => Owner::Driver(narrow(driver)),
+    };
+    let rows = model.rows().into_iter();
+    let outputs = model.outputs.iter().flat_map(|output| {
+        output.kind.columns().iter().map(|&(suffix, unit)| (output.name.clone(), suffix, unit))
+    });
+    let frames = model.outputs.iter().filter(|output| matches!(output.kind, OutputKind::Velocity { .. }));
+    Names {
+        size: model.size(),
+        bodies: moving.iter().map(name).collect(),
+        joints: model.joints.iter().map(|joint| (joint.name.clone(), readings(joint.kind))).collect(),
+        couplers: model.couplers.iter().map(|coupler| coupler.name.clone()).collect(),
+        drivers: model.drivers.iter().map(|driver| driver.name.clone()).collect(),
+        rows: rows
+            .map(|row| RowInfo { owner: owner(row.owner), is_length: row.unit == RowUnit::Length })
+            .collect(),
+        has_work: model.has_work(),
+        turn_references: turn_references(model),
+        inputs: model.inputs.iter().map(|input| input.name.clone()).collect(),
+        outputs: outputs.collect(),
+        frames: frames.map(|output| output.name.clone()).collect(),
+    }
+}
+
+/// What the readings of a joint are.
+fn readings(kind: JointKind) -> Vec<Coordinate> {
+    if kind == JointKind::Spherical {
+        return vec![Coordinate::Orientation];
+    }
+    let coordinates = kind.coordinates().iter();
+    coordinates.map(|c| if c.is_angle() { Coordinate::Angle } else { Coordinate::Length }).collect()
+}
+
+/// Where the angles of the turn references are among the readings.
+fn turn_references(model: &Model) -> Vec<u16> {
+    let place = |joint: usize, coordinate: usize| -> usize {
+        let before = model.joints[..joint].iter().flat_map(|joint| readings(joint.kind));
+        let own = readings(model.joints[joint].kind).into_iter().take(coordinate);
+        before.chain(own).map(Coordinate::n_readings).sum()
+    };
+    model.turn_references().iter().map(|turn| narrow(place(turn.joint, turn.coordinate))).collect()
+}
+
+impl<'a> Borrowed<'a> {
+    fn of(names: &'a Names) -> Self {
+        let list = |names: &'a [String]| names.iter().map(String::as_str).collect();
+        let joint = |(name, coordinates): &'a (String, Vec<Coordinate>)| JointInfo { name, coordinates };
+        let output = |(name, suffix, unit): &'a (String, &'static str, &'static str)| OutputInfo {
+            name,
+            suffix,
+            unit,
+        };
+        Self {
+            bodies: list(&names.bodies),
+            joints: names.joints.iter().map(joint).collect(),
+            couplers: list(&names.couplers),
+            drivers: list(&names.drivers),
+            inputs: list(&names.inputs),
+            outputs: names.outputs.iter().map(output).collect(),
+            frames: list(&names.frames),
+        }
+    }
+}
+
+impl Lists {
+    fn describe(&self) -> Description<'_> {
+        let (names, lists) = (self.borrow_owner(), self.borrow_dependent());
+        Description {
+            size: names.size,
+            bodies: &lists.bodies,
+            joints: &lists.joints,
+            couplers: &lists.couplers,
+            drivers: &lists.drivers,
+            rows: &names.rows,
+            has_work: names.has_work,
+            turn_references: &names.turn_references,
+            inputs: &lists.inputs,
+            outputs: &lists.outputs,
+        }
+    }
+}

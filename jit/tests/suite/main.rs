@@ -1,0 +1,7 @@
+//! Compiled kernels against interpreted ones, bit for bit.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod compiled;
+mod kernels;
+mod pair;
+mod proof;

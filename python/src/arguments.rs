@@ -1,0 +1,110 @@
+//! Arrays of numpy as arguments and results.
+
+use crate::batch::Inputs;
+use crate::dynamics::Dynamics;
+use crate::errors;
+use numpy::{PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+/// An array of doubles in C order; what is none is copied into one.
+pub(crate) fn doubles<'py>(given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    if let Ok(array) = given.cast::<PyArrayDyn<f64>>()
+        && array.is_c_contiguous()
+    {
+        return Ok(array.try_readonly()?);
+    }
+    let py = given.py();
+    let converted = py.import("numpy")?.call_method1("ascontiguousarray", (given, "f8"))?;
+    Ok(converted.cast::<PyArrayDyn<f64>>()?.try_readonly()?)
+}
+
+/// Its numbers.
+pub(crate) fn slice<'a>(array: &'a PyReadonlyArrayDyn<'_, f64>) -> &'a [f64] {
+    array.as_slice().unwrap_or_default()
+}
+
+/// How many states an array has: `None` for one alone, `(n,)`; else `(rows, n)`.
+pub(crate) fn rows(py: Python<'_>, name: &str, shape: &[usize], n: usize) -> PyResult<Option<usize>> {
+    match *shape {
+        [found] if found == n => Ok(None),
+        [rows, found] if found == n => Ok(Some(rows)),
+        _ => Err(errors::request(
+            py,
+            &format!("{name} has the shape {shape:?}: ({n},) was expected, or (rows, {n}) for many at once"),
+        )),
+    }
+}
+
+/// Refuses what is not one state.
+pub(crate) fn one(py: Python<'_>, shape: &[usize], n: usize) -> PyResult<()> {
+    match shape {
+        [found] if *found == n => Ok(()),
+        _ => Err(errors::request(
+            py,
+            &format!("the state has the shape {shape:?}: ({n},) was expected, x and then u"),
+        )),
+    }
+}
+
+/// Sets the inputs of one state: the model file's values, if none are given.
+pub(crate) fn set_inputs(
+    py: Python<'_>,
+    dynamics: &mut Dynamics,
+    given: Option<&PyReadonlyArrayDyn<'_, f64>>,
+) -> PyResult<()> {
+    let Some(given) = given else {
+        dynamics.reset_inputs();
+        return Ok(());
+    };
+    match rows(py, "inputs", given.shape(), dynamics.defaults.len())? {
+        None => dynamics.set_inputs(slice(given)),
+        Some(rows) => {
+            return Err(errors::request(
+                py,
+                &format!("inputs have {rows} rows: those of one state were expected"),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The inputs of many states.
+pub(crate) fn of_many<'a>(
+    py: Python<'_>,
+    n: Option<usize>,
+    given: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
+    defaults: &'a [f64],
+) -> PyResult<Inputs<'a>> {
+    let Some(given) = given else { return Ok(Inputs::Same(defaults)) };
+    match rows(py, "inputs", given.shape(), defaults.len())? {
+        None => Ok(Inputs::Same(slice(given))),
+        found if found == n => Ok(Inputs::Own(slice(given))),
+        found => {
+            let words = format!("inputs have {} rows: as many were expected as x has", found.unwrap_or(1));
+            Err(errors::request(py, &words))
+        }
+    }
+}
+
+/// An array for results.
+pub(crate) fn zeros(py: Python<'_>, rows: Option<usize>, n: usize) -> Bound<'_, PyArrayDyn<f64>> {
+    match rows {
+        None => PyArray::zeros(py, &[n][..], false),
+        Some(rows) => PyArray::zeros(py, &[rows, n][..], false),
+    }
+}
+
+/// The caller's array for results.
+pub(crate) fn result<'py>(
+    py: Python<'py>,
+    out: Bound<'py, PyAny>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    match out.cast_into::<PyArrayDyn<f64>>() {
+        Ok(array) if array.is_c_contiguous() && array.shape() == shape => Ok(array),
+        _ => {
+            let words = format!("out: an array of float64 in C order with the shape {shape:?} was expected");
+            Err(errors::request(py, &words))
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! Equations whose inputs follow the time.
+//!
+//! A solver is handed the mechanism by reference, with the inputs that it has. Under error control inputs that vary
+//! must be seen at the times of a step's stages: the equations then have a copy of the mechanism, whose inputs they set
+//! before each evaluation. Between two knots an input is one cubic, at both ends too: steps end at knots, so that none
+//! sees more than one piece.
+
+use super::course::Course;
+use super::lens::{Moving, MovingInputs};
+use crate::Input;
+use gyro_sim::{Clearance, Correction, Error, Jacobian, Mechanism, Ode, Scalar};
+use std::cell::{Ref, RefCell};
+
+/// Equations, perhaps with inputs that follow the time.
+pub(super) struct Fed<L, M: Mechanism> {
+    pub(super) lens: L,
+    feed: Option<Box<Feed<M>>>,
+}
+
+struct Feed<M: Mechanism> {
+    mechanism: RefCell<M>,
+    pieces: Vec<Piece<M::Scalar>>,
+}
+
+/// What an input is until the next knot.
+struct Piece<T> {
+    input: usize,
+    origin: T,
+    coefficients: [T; 4],
+}
+
+impl<T: Scalar> Piece<T> {
+    fn new(input: &Input, t: f64) -> Self {
+        let (origin, coefficients) = input.piece(t);
+        Self { input: input.index, origin: T::constant(origin), coefficients: coefficients.map(T::constant) }
+    }
+
+    fn at(&self, t: T) -> Moving<T> {
+        let (u, [c0, c1, c2, c3]) = (t - self.origin, self.coefficients);
+        let (two, three) = (T::constant(2.0), T::constant(3.0));
+        (self.input, [c0 + u * (c1 + u * (c2 + u * c3)), c1 + u * (two * c2 + u * (three * c3))])
+    }
+}
+
+impl<M: Mechanism> Feed<M> {
+    /// The mechanism with its inputs at a time.
+    fn at(&self, t: M::Scalar) -> Ref<'_, M> {
+        let mut mechanism = self.mechanism.borrow_mut();
+        for (index, [value, _]) in self.moving(t) {
+            mechanism.set_input(index, value);
+        }
+        drop(mechanism);
+        self.mechanism.borrow()
+    }
+
+    fn moving(&self, t: M::Scalar) -> impl Iterator<Item = Moving<M::Scalar>> {
+        self.pieces.iter().map(move |piece| piece.at(t))
+    }
+}
+
+impl<L, M: Mechanism> Fed<L, M> {
+    /// Equations with the inputs that the mechanism has.
+    pub(super) fn of(lens: L) -> Self {
+        Self { lens, feed: None }
+    }
+
+    /// From now on the inputs follow their course, in a copy of the mechanism.
+    pub(super) fn follow(&mut self, mechanism: M) {
+        self.feed = Some(Box::new(Feed { mechanism: RefCell::new(mechanism), pieces: Vec::new() }));
+    }
+
+    /// A knot has been reached: from here on other pieces hold.
+    pub(super) fn enter(&mut self, course: &Course, t: f64) {
+        if let Some(feed) = &mut self.feed {
+            feed.pieces = course.inputs().iter().map(|input| Piece::new(input, t)).collect();
+        }
+    }
+}
+
+impl<L: Ode<M, Scalar = M::Scalar>, M: Mechanism> Ode<M> for Fed<L, M> {
+    type Scalar = M::Scalar;
+    type State = L::State;
+
+    fn derivative(&self, mechanism: &M, t: M::Scalar, y: &L::State, dy: &mut L::State) {
+        match &self.feed {
+            None => self.lens.derivative(mechanism, t, y, dy),
+            Some(feed) => self.lens.derivative(&feed.at(t), t, y, dy),
+        }
+    }
+}
+
+impl<L: MovingInputs<M>, M: Mechanism> Jacobian<M> for Fed<L, M> {
+    type Matrix = L::Matrix;
+
+    fn jacobian(&self, mechanism: &M, t: M::Scalar, y: &L::State, dfdy: &mut L::Matrix, dfdt: &mut L::State) {
+        match &self.feed {
+            None => self.lens.jacobian(mechanism, t, y, dfdy, dfdt),
+            Some(feed) => {
+                let inputs: Vec<_> = feed.moving(t).collect();
+                self.lens.moving_jacobian(&feed.at(t), &inputs, (t, y), dfdy, dfdt);
+            }
+        }
+    }
+}
+
+/// A correction of the equations by themselves: constraints do not depend on inputs.
+pub(super) struct Around<C>(pub(super) C);
+
+impl<L, M, C> Correction<Fed<L, M>, M> for Around<C>
+where
+    L: Ode<M, Scalar = M::Scalar>,
+    M: Mechanism,
+    C: Correction<L, M>,
+{
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut L::State) -> Result<(), Error> {
+        self.0.correct(mechanism, t, y)
+    }
+    fn refer_turns(&mut self, mechanism: &M, t: M::Scalar, y: &mut L::State) {
+        self.0.refer_turns(mechanism, t, y);
+    }
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &L::State) -> M::Scalar {
+        self.0.violation(mechanism, t, y)
+    }
+    fn switches(&self) -> u64 {
+        self.0.switches()
+    }
+    fn clearance(&self, mechanism: &M, t: M::Scalar, y: &L::State) -> Option<Clearance<M::Scalar>> {
+        self.0.clearance(mechanism, t, y)
+    }
+}

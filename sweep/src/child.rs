@@ -1,0 +1,187 @@
+//! The program that runs scenarios: all but its few lines.
+//!
+//! It reads a [`Job`] from standard input and then, until the input ends, a [`Unit`] at a time; of each block it writes
+//! the record to standard output. A scenario that fails is a row with its error; no scenario ends the program.
+
+mod joint;
+mod packs;
+mod whole;
+
+use crate::keep::sample_times;
+use crate::plan::{Source, Target};
+use crate::record::Block;
+use crate::{Keep, Keeper, Plan};
+use gyro_runner::protocol::read;
+use gyro_runner::{Approach, Settings, Start, scheduled};
+use nanoserde::{DeBin, SerBin};
+pub use packs::packs;
+use std::io::{self, BufRead, Write};
+use std::process::ExitCode;
+pub use whole::whole;
+
+/// What is to be run: all that a program needs to know of a study.
+#[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
+pub struct Job {
+    /// What varies.
+    pub plan: Plan,
+    /// What is kept.
+    pub keep: Keep,
+    /// When to step, to correct and to sample.
+    pub settings: Settings,
+    /// By which method.
+    pub approach: Approach,
+    /// The parameters' values where they do not vary.
+    pub parameters: Vec<f64>,
+    /// Where a scenario starts for which nothing else is said, with the inputs that do not vary.
+    pub start: Start,
+    /// Scenarios in a block.
+    pub block: u32,
+    /// For estimates of errors: the mechanism's size, m, and whether the energy's balance has to close.
+    pub measure: Option<(f64, bool)>,
+}
+
+/// Blocks to be run.
+#[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
+pub struct Unit {
+    /// Their numbers.
+    pub blocks: Vec<u64>,
+    /// Where their scenarios start, or why they cannot; empty where all start alike.
+    #[nserde(proxy = "Starts")]
+    pub starts: Vec<Result<Start, String>>,
+}
+
+/// As they are handed over.
+#[derive(SerBin, DeBin)]
+struct Starts(Vec<Outset>);
+
+#[derive(Clone, SerBin, DeBin)]
+enum Outset {
+    At(Start),
+    Impossible(String),
+}
+
+impl From<&Vec<Result<Start, String>>> for Starts {
+    fn from(starts: &Vec<Result<Start, String>>) -> Self {
+        let outset = |start: &Result<Start, String>| match start {
+            Ok(start) => Outset::At(start.clone()),
+            Err(words) => Outset::Impossible(words.clone()),
+        };
+        Self(starts.iter().map(outset).collect())
+    }
+}
+
+impl From<&Starts> for Vec<Result<Start, String>> {
+    fn from(starts: &Starts) -> Self {
+        let result = |outset: &Outset| match outset {
+            Outset::At(start) => Ok(start.clone()),
+            Outset::Impossible(words) => Err(words.clone()),
+        };
+        starts.0.iter().map(result).collect()
+    }
+}
+
+impl Job {
+    /// The first scenario of a block, and how many it has.
+    pub fn range(&self, block: u64) -> (u64, u32) {
+        let first = block * u64::from(self.block);
+        let left = self.plan.scenarios().saturating_sub(first);
+        (first, u32::try_from(left).unwrap_or(u32::MAX).min(self.block))
+    }
+
+    /// How many blocks there are.
+    pub fn blocks(&self) -> u64 {
+        self.plan.scenarios().div_ceil(u64::from(self.block))
+    }
+
+    /// The times of a scenario's samples, s.
+    pub fn times(&self) -> Vec<f64> {
+        sample_times(&scheduled(&self.settings, &self.approach))
+    }
+
+    /// The parameters of a scenario with these values.
+    fn write_parameters(&self, values: &[f64], parameters: &mut Vec<f64>) {
+        parameters.clone_from(&self.parameters);
+        for (target, value) in self.plan.targets.iter().zip(values) {
+            if let Target::Parameter(index) = target {
+                parameters[*index] = *value;
+            }
+        }
+    }
+}
+
+/// What runs scenarios one after the other.
+trait Runs {
+    /// Runs scenarios that follow each other and appends what is kept of them; `starts` has one for each or is empty.
+    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>]);
+}
+
+/// Reads the job, then units; answers with records.
+fn serve<R: Runs>(begin: impl FnOnce(&'static Job) -> R) -> ExitCode {
+    match answer(begin, &mut io::stdin().lock(), &mut io::stdout().lock()) {
+        Ok(()) => ExitCode::SUCCESS,
+        // Nobody is left to be told if standard error is closed.
+        Err(error) => {
+            let _ = writeln!(io::stderr(), "{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn answer<R: Runs>(
+    begin: impl FnOnce(&'static Job) -> R,
+    input: &mut impl BufRead,
+    output: &mut impl Write,
+) -> io::Result<()> {
+    let Some(job) = read::<Job>(input)? else { return Ok(()) };
+    // One job for the life of the program.
+    let job: &'static Job = Box::leak(Box::new(job));
+    let mut runs = begin(job);
+    while let Some(unit) = read::<Unit>(input)? {
+        let mut starts = &unit.starts[..];
+        for block in &unit.blocks {
+            let (first, count) = job.range(*block);
+            let (own, rest) = starts.split_at((count as usize).min(starts.len()));
+            starts = rest;
+            let mut block = Block { first, count, ..Block::default() };
+            runs.run(&mut block, own);
+            output.write_all(&block.encode())?;
+            output.flush()?;
+        }
+    }
+    Ok(())
+}
+
+/// What scenarios of a job have in common.
+struct Common {
+    job: &'static Job,
+    source: Source<'static>,
+    keeper: Keeper<'static>,
+    values: Vec<f64>,
+    parameters: Vec<f64>,
+}
+
+impl Common {
+    fn new(job: &'static Job) -> Self {
+        Self {
+            job,
+            source: Source::new(&job.plan),
+            keeper: Keeper::new(&job.keep, job.times().len()),
+            values: vec![0.0; job.plan.targets.len()],
+            parameters: Vec::new(),
+        }
+    }
+
+    /// Takes up scenario k.
+    fn draw(&mut self, k: u64) {
+        self.source.write(k, &mut self.values);
+        self.job.write_parameters(&self.values, &mut self.parameters);
+    }
+}
+
+/// Notes an error of a row. It is one line, as tables have it.
+fn note(block: &mut Block, row: u32, words: &str) {
+    block.errors.push((row, words.split_whitespace().collect::<Vec<_>>().join(" ")));
+}
+
+#[cfg(test)]
+mod tests;

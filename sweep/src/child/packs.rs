@@ -1,0 +1,169 @@
+//! Scenarios of open trees in joint coordinates, eight at a time in the lanes of a pack.
+//!
+//! Steps of fixed length are the same in all lanes. Under error control each lane has its own.
+
+mod adaptive;
+
+use super::joint::Layout;
+use super::{Common, Job, Runs, note, serve};
+use crate::record::Block;
+use gyro_runner::{Approach, Integrator, Schedule, Start, describe_in, scheduled};
+use gyro_sim::lanes::{Direct, Lanes, f64x8};
+use gyro_sim::{Dop853, Error, Joint, JointSpace, Scalar, Tsit5};
+use std::process::ExitCode;
+
+/// Scenarios in a pack.
+const LANES: usize = f64x8::COUNT;
+
+/// Runs scenarios with the mechanism that `one` makes of parameters and `many` of packs of them; `check` says why
+/// it cannot have parameters.
+pub fn packs<M, P>(
+    one: impl Fn(&[f64]) -> M,
+    many: impl Fn(&[f64x8]) -> P,
+    check: impl Fn(&[f64]) -> Result<(), String>,
+) -> ExitCode
+where
+    M: JointSpace<Scalar = f64>,
+    P: JointSpace<Scalar = f64x8>,
+{
+    serve(|job| begin(job, one, many, check))
+}
+
+pub(super) fn begin<M, P, F, G, C>(job: &'static Job, one: F, many: G, check: C) -> impl Runs
+where
+    M: JointSpace<Scalar = f64>,
+    P: JointSpace<Scalar = f64x8>,
+    F: Fn(&[f64]) -> M,
+    G: Fn(&[f64x8]) -> P,
+    C: Fn(&[f64]) -> Result<(), String>,
+{
+    let layout = Layout::new(&one(&job.parameters), job);
+    let (common, times) = (Common::new(job), job.times());
+    Packs { common, layout, times, x: Vec::new(), samples: Vec::new(), one, many, check }
+}
+
+struct Packs<F, G, C> {
+    common: Common,
+    layout: Layout,
+    times: Vec<f64>,
+    /// A joint state.
+    x: Vec<f64>,
+    /// The kept quantities, sample after sample.
+    samples: Vec<f64x8>,
+    one: F,
+    many: G,
+    check: C,
+}
+
+impl<M, P, F, G, C> Runs for Packs<F, G, C>
+where
+    M: JointSpace<Scalar = f64>,
+    P: JointSpace<Scalar = f64x8>,
+    F: Fn(&[f64]) -> M,
+    G: Fn(&[f64x8]) -> P,
+    C: Fn(&[f64]) -> Result<(), String>,
+{
+    fn run(&mut self, block: &mut Block, _: &[Result<Start, String>]) {
+        let Approach { tolerance, integrator, .. } = self.common.job.approach;
+        if tolerance.is_none() {
+            let lanes = LANES as u32;
+            for row in (0..block.count).step_by(LANES) {
+                self.run_pack(block, row, (block.count - row).min(lanes));
+            }
+        } else if integrator == Integrator::Tsit5 {
+            self.run_lanes::<_, Tsit5<M::Joints>>(block, Tsit5::new);
+        } else {
+            self.run_lanes::<_, Dop853<M::Joints, f64>>(block, Dop853::new);
+        }
+    }
+}
+
+impl<M, P, F, G, C> Packs<F, G, C>
+where
+    M: JointSpace<Scalar = f64>,
+    P: JointSpace<Scalar = f64x8>,
+    F: Fn(&[f64]) -> M,
+    G: Fn(&[f64x8]) -> P,
+    C: Fn(&[f64]) -> Result<(), String>,
+{
+    /// Steps of fixed length; lanes that no scenario fills repeat the last one.
+    fn run_pack(&mut self, block: &mut Block, row: u32, count: u32) {
+        let Self { common, layout, times, x, samples, one, many, check } = self;
+        let job = common.job;
+        let mut parameters = vec![f64x8::constant(0.0); job.parameters.len()];
+        let mut lanes: Vec<Vec<f64>> = Vec::with_capacity(LANES);
+        let (mut inputs, mut refused) = (Vec::new(), [const { None }; LANES]);
+        for (lane, refused) in refused.iter_mut().enumerate() {
+            common.draw(block.first + u64::from(row + (lane as u32).min(count - 1)));
+            *refused = check(&common.parameters).err();
+            if refused.is_some() {
+                // The lane runs all the same, with numbers that it can.
+                common.parameters.clone_from(&job.parameters);
+            }
+            for (pack, value) in parameters.iter_mut().zip(&common.parameters) {
+                set_lane(pack, lane, *value);
+            }
+            layout.write_start(&common.values, x);
+            lanes.push(x.clone());
+            inputs.push(job.plan.inputs(&common.values));
+        }
+        let mut mechanism = many(&parameters);
+        for input in &job.start.inputs {
+            mechanism.set_input(input.index, f64x8::constant(input.at(0.0)));
+        }
+        for (k, input) in inputs[0].iter().enumerate() {
+            let value = f64x8::from_lanes(|lane| inputs[lane][k].at(0.0));
+            mechanism.set_input(input.index, value);
+        }
+        let mut state = mechanism.joint_start();
+        for (element, pack) in state.as_mut().iter_mut().enumerate() {
+            *pack = f64x8::from_lanes(|lane| lanes[lane][element]);
+        }
+        let columns = job.keep.columns.len();
+        let mut direct = Direct::new(Joint, &state);
+        samples.clear();
+        samples.extend((0..columns).map(|column| state.as_ref()[layout.column(column)]));
+        for segment in Schedule::new(&scheduled(&job.settings, &job.approach)) {
+            #[expect(clippy::cast_precision_loss, reason = "step numbers stay below 2⁵³")]
+            let h = (segment.to - segment.from) / segment.n_steps as f64;
+            let steps = u32::try_from(segment.n_steps).unwrap_or(u32::MAX);
+            let [t, h] = [segment.from, h].map(f64x8::constant);
+            direct.advance(&mechanism, t, h, steps, &mut state);
+            if segment.samples {
+                samples.extend((0..columns).map(|column| state.as_ref()[layout.column(column)]));
+            }
+        }
+        for lane in 0..count {
+            if let Some(refused) = &refused[lane as usize] {
+                common.keeper.finish(false, &mut block.numbers);
+                note(block, row + lane, refused);
+                continue;
+            }
+            let failure = direct.failures().of(lane as usize);
+            let is_kept = |t: f64| failure.is_none_or(|error| time(&error).is_none_or(|end| t < end));
+            let taken = times.iter().enumerate().filter(|(_, t)| is_kept(**t));
+            for (sample, t) in taken {
+                let values = &samples[sample * columns..];
+                common.keeper.take_columns(*t, |column| values[column].lane(lane as usize));
+            }
+            common.keeper.finish(failure.is_none(), &mut block.numbers);
+            if let Some(error) = failure {
+                let mechanism = one(&job.parameters);
+                note(block, row + lane, &describe_in(&mechanism, Some(mechanism.joint_layout()), &error));
+            }
+        }
+    }
+}
+
+fn set_lane(pack: &mut f64x8, lane: usize, value: f64) {
+    let before = *pack;
+    *pack = f64x8::from_lanes(|other| if other == lane { value } else { before.lane(other) });
+}
+
+/// When a run of lanes failed, s.
+fn time(error: &Error) -> Option<f64> {
+    match error {
+        Error::NotFinite { t, .. } | Error::InvalidEndTime { t, .. } => Some(*t),
+        _ => None,
+    }
+}

@@ -1,0 +1,119 @@
+//! What is kept of each scenario.
+
+use super::reader::{Item, Reader, Section, instead};
+use super::{Named, Vocabulary};
+use crate::{Keep, Passage, Quantity};
+
+/// What a study keeps, with names and units.
+#[derive(Debug, Default)]
+pub(super) struct Kept {
+    pub(super) keep: Keep,
+    pub(super) numbers: Vec<(String, String)>,
+    pub(super) series: Vec<(String, String)>,
+    /// How many of the series are for quantiles.
+    pub(super) quantiles: usize,
+}
+
+const KEYS: [&str; 6] = ["final", "extremes", "passages", "quantiles", "series", "estimate"];
+
+/// Reads `[keep]`; `None` after a mistake.
+pub(super) fn read(reader: &mut Reader, whole: &Section<'_>, vocabulary: &Vocabulary) -> Option<Kept> {
+    let example = "keep = { final = [\"alpha\"] }, with the names of simulate's columns";
+    let section = whole.require(reader, "keep", example)?.section(reader, "[keep]", &KEYS)?;
+    let before = reader.mistakes.len();
+    let mut kept = Kept::default();
+    let columns = &vocabulary.columns;
+    for (place, named) in kept.named(reader, section.get("final"), columns) {
+        kept.keep.finals.push(place);
+        kept.numbers.push((format!("{} final", named.name), named.unit.clone()));
+    }
+    for (place, named) in kept.named(reader, section.get("extremes"), columns) {
+        kept.keep.extremes.push(place);
+        kept.numbers.extend(["min", "max"].map(|end| (format!("{} {end}", named.name), named.unit.clone())));
+    }
+    for passage in section.get("passages").and_then(|item| list(reader, item)).into_iter().flatten() {
+        kept.passage(reader, passage, columns);
+    }
+    if section.get("estimate").and_then(|item| item.flag(reader)) == Some(true) {
+        kept.keep.estimate = true;
+        kept.numbers.push(("estimated error".to_owned(), "1".to_owned()));
+    }
+    let quantiles = kept.named(reader, section.get("quantiles"), columns);
+    kept.quantiles = quantiles.len();
+    let series = kept.named(reader, section.get("series"), columns);
+    for (place, named) in quantiles.into_iter().chain(series) {
+        if !kept.keep.series.contains(&place) {
+            kept.keep.series.push(place);
+            kept.series.push((named.name.clone(), named.unit.clone()));
+        }
+    }
+    if reader.mistakes.len() == before && kept.numbers.is_empty() && kept.series.is_empty() {
+        whole.wrong(reader, "keep", ["nothing is kept", "empty", &format!("write {example}")]);
+    }
+    (reader.mistakes.len() == before).then_some(kept)
+}
+
+fn list<'t>(reader: &mut Reader, item: Item<'t>) -> Option<Vec<Item<'t>>> {
+    let elements = item.elements();
+    if elements.is_none() {
+        let help = "write passages = [{ of = \"alpha\", above = 0.1 }]";
+        reader.wrong(item.span(), ["`passages` must be an array of tables", "not an array", help]);
+    }
+    elements
+}
+
+impl Kept {
+    /// The columns of these names, each with its place among those that are looked at.
+    fn named<'v>(
+        &mut self,
+        reader: &mut Reader,
+        item: Option<Item<'_>>,
+        columns: &'v [Named<Quantity>],
+    ) -> Vec<(usize, &'v Named<Quantity>)> {
+        let names = item.and_then(|item| item.texts(reader)).unwrap_or_default();
+        let mut found: Vec<(usize, &Named<Quantity>)> = Vec::new();
+        for (name, span) in names {
+            match columns.iter().find(|column| column.name == name) {
+                Some(named) => {
+                    let place = self.place(named.of);
+                    if found.iter().any(|(other, _)| *other == place) {
+                        reader.wrong(span, ["this is named twice", "again", "remove it"]);
+                    }
+                    found.push((place, named));
+                }
+                None => {
+                    let known: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+                    let help = instead(&name, &known, "the columns are");
+                    reader.wrong(span, [&format!("there is no column `{name}`"), "unknown", &help]);
+                }
+            }
+        }
+        found
+    }
+
+    fn place(&mut self, quantity: Quantity) -> usize {
+        let columns = &mut self.keep.columns;
+        columns.iter().position(|other| *other == quantity).unwrap_or_else(|| {
+            columns.push(quantity);
+            columns.len() - 1
+        })
+    }
+
+    fn passage(&mut self, reader: &mut Reader, item: Item<'_>, columns: &[Named<Quantity>]) {
+        let Some(section) = item.section(reader, "a passage", &["of", "above", "below"]) else { return };
+        let of = section.require(reader, "of", "of = \"alpha\"");
+        let Some(&(column, named)) = self.named(reader, of, columns).first() else { return };
+        let (level, word) = match (section.get("above"), section.get("below")) {
+            (Some(level), None) => (level, "above"),
+            (None, Some(level)) => (level, "below"),
+            _ => {
+                let help = "write above = 0.1 or below = 0.1";
+                reader.wrong(section.span(), ["a passage has one level", "needs `above` or `below`", help]);
+                return;
+            }
+        };
+        let Some(level) = level.number(reader) else { return };
+        self.keep.passages.push(Passage { column, level, rises: word == "above" });
+        self.numbers.push((format!("{} {word} {level:?}", named.name), "s".to_owned()));
+    }
+}
