@@ -10,7 +10,7 @@ pub struct Controller {
     /// The law.
     pub law: Law,
     /// What it sees.
-    pub outputs: Vec<Measured>,
+    pub outputs: Vec<Seen>,
     /// Indices into [`crate::Model::inputs`]: what it sets.
     pub inputs: Vec<usize>,
     /// The period: so many seconds over so many, neither zero.
@@ -51,7 +51,7 @@ pub enum Law {
 
 /// A number of the mechanism that a controller can see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measured {
+pub enum Seen {
     /// A number of an output.
     Output {
         /// Index into [`crate::Model::outputs`].

@@ -29,7 +29,7 @@ mod validate;
 
 pub use assemble::{AssemblyError, JointStart, Move, START_TOLERANCE, Start, StartTolerances};
 pub use computation::Computation;
-pub use controller::{Controller, Law, Measured};
+pub use controller::{Controller, Law, Seen};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
     CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame, Output,

@@ -1,6 +1,7 @@
 //! The loop.
 
 use crate::advice::Plan;
+use crate::control::{Controller, Controllers, Seen};
 use crate::failure::behind;
 use crate::forecast::{self, Forecast};
 use crate::input::{any_varies, set};
@@ -37,6 +38,8 @@ pub struct Start {
     pub knots: Vec<f64>,
     /// Indices of the bodies whose pose and velocity are sampled.
     pub observed_bodies: Vec<usize>,
+    /// What sets inputs in a closed loop; none of them is among `inputs`, and none is set twice.
+    pub controllers: Vec<Controller>,
 }
 
 /// What a run has to tell.
@@ -97,7 +100,8 @@ pub fn run_by<M: Partition<Scalar: Real> + Clone + 'static>(
     let settings = scheduled(settings, approach);
     let offers = Offers {
         epsilon: <M::Scalar as Real>::EPSILON.to_f64(),
-        inputs_vary: any_varies(&start.inputs),
+        inputs_vary: any_varies(&start.inputs) || !start.controllers.is_empty(),
+        period: start.controllers.iter().map(Controller::period_s).reduce(f64::min),
         ..builder.offers()
     };
     if let Some(words) = offers.refusal(&settings, approach) {
@@ -254,6 +258,7 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     mechanism: &'a mut M,
     motion: Box<dyn Motion<M>>,
     inputs: &'a [Input],
+    controllers: Controllers<M::Scalar>,
     steps_at_once: u64,
     /// Fixed steps that may yet be taken; under error control the solver counts them.
     budget: u64,
@@ -278,6 +283,7 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         Self {
             motion,
             inputs: &start.inputs,
+            controllers: Controllers::new(&start.controllers),
             steps_at_once: if any_varies(&start.inputs) { 1 } else { STEPS_BETWEEN_READINGS },
             budget: approach.budget.unwrap_or(u64::MAX),
             turns: Turns::new(mechanism, Scalar::constant(0.0), &y, &angles),
@@ -347,14 +353,16 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
                 let steps = self.motion.statistics().accepted;
                 return Err(Error::TooManySteps { t: self.motion.time(), steps }.into());
             }
-            self.budget -= n_steps;
             self.set_inputs();
             let began = Instant::now();
-            for _ in 0..n_steps {
+            self.control()?;
+            let mut taken = 0;
+            while taken < n_steps && !(taken > 0 && self.controllers.is_due(self.now())) {
                 self.motion.step(self.mechanism, h)?;
+                taken += 1;
             }
             self.summary.run_time_s += began.elapsed().as_secs_f64();
-            done += n_steps;
+            (self.budget, done) = (self.budget - taken, done + taken);
             self.read_turns(self.motion.time())?;
             told.progress(self.motion.time())?;
         }
@@ -377,7 +385,9 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         let t = M::Scalar::constant(t).to_f64();
         while self.motion.time() < t {
             let began = Instant::now();
-            self.motion.step_towards(self.mechanism, t_end)?;
+            self.control()?;
+            let next = M::Scalar::constant(self.controllers.next()).to_f64();
+            self.motion.step_towards(self.mechanism, t_end.min(next))?;
             self.summary.run_time_s += began.elapsed().as_secs_f64();
             if self.motion.time() <= t {
                 self.read_turns(self.motion.time())?;
@@ -389,8 +399,9 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
 
     /// The joint form at the last state.
     fn linearised(&self, builder: &dyn MotionBuilder<M>, t: f64) -> Option<Linear> {
-        let (angles, inputs) = (self.angles(), self.inputs);
-        builder.linearise(self.mechanism, &OperatingPoint { t, y: &self.y, angles: &angles, inputs })
+        let (angles, mut inputs) = (self.angles(), self.inputs.to_vec());
+        inputs.extend(self.controllers.held().map(|(index, value)| Input::constant(index, value)));
+        builder.linearise(self.mechanism, &OperatingPoint { t, y: &self.y, angles: &angles, inputs: &inputs })
     }
 
     fn set_inputs(&mut self) {
@@ -401,6 +412,43 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
                 self.motion.set_input(input.index, input.at(t));
             }
         }
+    }
+
+    /// The time of the motion.
+    fn now(&self) -> M::Scalar {
+        M::Scalar::constant(self.motion.time())
+    }
+
+    /// Lets controllers act that have something to do now.
+    fn control(&mut self) -> Result<(), Error> {
+        let t = self.now();
+        if !self.controllers.is_due(t) {
+            return Ok(());
+        }
+        // The state may have been corrected since it was read.
+        if self.motion.time() > 0.0 {
+            self.read_turns(self.motion.time())?;
+        }
+        let Self { mechanism, motion, controllers, turns, observer, y, .. } = self;
+        let outputs = observer.outputs(mechanism, t, y);
+        let scalar = |joint, k| match turns.coordinate(mechanism, joint, k) {
+            Some(
+                JointCoordinate::Angle { position, rate } | JointCoordinate::Length { position, rate },
+            ) => [position, rate],
+            _ => [Scalar::constant(f64::NAN); 2],
+        };
+        let mut changed = Vec::new();
+        let see = |measured| match measured {
+            Seen::Output(index) => outputs[index],
+            Seen::Coordinate(joint, k) => scalar(joint, k)[0],
+            Seen::Rate(joint, k) => scalar(joint, k)[1],
+        };
+        controllers.act(t, see, |index, value| changed.push((index, value)));
+        for (index, value) in changed {
+            mechanism.set_input(index, value);
+            motion.set_input(index, value.to_f64());
+        }
+        Ok(())
     }
 
     /// Between two readings the mean rate predicts each angle to within half a turn.
@@ -418,7 +466,13 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         if t > 0.0 {
             self.read_turns(t)?;
         }
-        Ok(self.observer.sample(self.mechanism, t, &self.y, &self.turns, self.motion.chart_switches()))
+        // Of a motion that is beyond this time controllers have acted.
+        if self.motion.time() <= t {
+            self.control()?;
+        }
+        let sample =
+            self.observer.sample(self.mechanism, t, &self.y, &self.turns, self.motion.chart_switches());
+        Ok(Sample { controlled: self.controllers.held().map(|(_, value)| value).collect(), ..sample })
     }
 
     /// The continuous angle of each coordinate at the last reading; zero for what is not an angle.

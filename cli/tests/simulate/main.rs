@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod cells;
+mod controllers;
 mod inputs;
 mod interrupted;
 mod refusals;

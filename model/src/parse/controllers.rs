@@ -10,7 +10,7 @@ use super::section::{self, Item, Section};
 use super::tables;
 use crate::diagnostics::Related;
 use crate::validate::{Owner, Place};
-use crate::{Controller, JointCoordinate, Law, Measured, Number, Output, Rational};
+use crate::{Controller, JointCoordinate, Law, Seen, Number, Output, Rational};
 
 const KEYS: [&str; 17] = [
     "name",
@@ -62,7 +62,7 @@ const KINDS_KEYS: section::Kinds<'static> = &[
 ];
 
 /// Names that controllers may use, each with what it is.
-type Known = Vec<(String, Measured)>;
+type Known = Vec<(String, Seen)>;
 
 /// Reads all controllers.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, outputs: &[Output]) -> Vec<Controller> {
@@ -89,15 +89,15 @@ fn measurable(joints: &[NamedJoint], outputs: &[Output]) -> Known {
         for (coordinate, kind) in kinds.iter().enumerate() {
             let name = if kinds.len() == 1 { name.clone() } else { format!("{name}.{}", kind.name()) };
             let on = JointCoordinate { joint, coordinate };
-            known.push((format!("{name} rate"), Measured::Rate(on)));
-            known.push((name, Measured::Coordinate(on)));
+            known.push((format!("{name} rate"), Seen::Rate(on)));
+            known.push((name, Seen::Coordinate(on)));
         }
     }
     for (index, output) in outputs.iter().enumerate() {
         for (number, (suffix, _)) in output.kind.columns().iter().enumerate() {
             let dot = if suffix.is_empty() { "" } else { "." };
             let name = format!("{}{dot}{suffix}", output.name);
-            known.push((name, Measured::Output { output: index, number }));
+            known.push((name, Seen::Output { output: index, number }));
         }
     }
     known
@@ -117,7 +117,7 @@ fn controller(
     }
     let example = "outputs = [\"...\"]: joint coordinates, their rates, numbers of outputs";
     let outputs = section.require(reader, "outputs", &title, example);
-    let outputs: Option<Vec<Measured>> = outputs.and_then(|item| {
+    let outputs: Option<Vec<Seen>> = outputs.and_then(|item| {
         words(reader, item)?.into_iter().map(|(item, word)| measured(reader, item, word, known)).collect()
     });
     let example = "inputs = [\"...\"], names of [inputs]";
@@ -168,7 +168,7 @@ fn words<'t>(reader: &mut Reader<'_>, item: Item<'t>) -> Option<Vec<(Item<'t>, &
     Some(words)
 }
 
-fn measured(reader: &mut Reader<'_>, item: Item<'_>, word: &str, known: &Known) -> Option<Measured> {
+fn measured(reader: &mut Reader<'_>, item: Item<'_>, word: &str, known: &Known) -> Option<Seen> {
     if let Some((_, measured)) = known.iter().find(|(name, _)| name == word) {
         return Some(*measured);
     }
