@@ -45,7 +45,8 @@ fn closed(model: &Model, linear: &Linear) -> Result<Closed, String> {
 /// The plant as the controllers see it: their inputs, and a row of C and D for each number seen.
 fn plant(linear: &Linear, controllers: &[Controller], model: &Model) -> Result<Plant, String> {
     let (n, m) = (linear.state.len(), model.inputs.len());
-    let inputs: Vec<usize> = controllers.iter().flat_map(|c| c.inputs.iter().map(|(index, _)| *index)).collect();
+    let inputs: Vec<usize> =
+        controllers.iter().flat_map(|c| c.inputs.iter().map(|(index, _)| *index)).collect();
     let mut seen = Vec::new();
     for (controller, what) in controllers.iter().flat_map(|c| c.outputs.iter().map(move |seen| (c, seen))) {
         let row = match *what {
@@ -161,7 +162,12 @@ pub(crate) fn text(model: &Model, linear: &Linear) -> String {
 
 fn in_words(margins: &Margins) -> String {
     let gain = |(gain, at): (f64, f64)| {
-        format!("{} ({} dB) at {} rad/s", number(gain, DIGITS), number(20.0 * gain.log10(), 4), number(at, DIGITS))
+        format!(
+            "{} ({} dB) at {} rad/s",
+            number(gain, DIGITS),
+            number(20.0 * gain.log10(), 4),
+            number(at, DIGITS)
+        )
     };
     let phase = margins.phase.map_or("none".to_owned(), |(phase, at)| {
         format!("{} deg at {} rad/s", number(phase * 180.0 / PI, DIGITS), number(at, DIGITS))

@@ -78,7 +78,8 @@ pub(crate) fn text(model: &Model) -> String {
             Law::StateFeedback { .. } => "state_feedback",
             Law::TransferFunction { .. } => "transfer_function",
         };
-        let inputs: Vec<&str> = controller.inputs.iter().map(|&index| model.inputs[index].name.as_str()).collect();
+        let inputs: Vec<&str> =
+            controller.inputs.iter().map(|&index| model.inputs[index].name.as_str()).collect();
         #[expect(clippy::cast_precision_loss, reason = "whole numbers below 2⁵³")]
         let period = controller.period[0] as f64 / controller.period[1] as f64;
         let delay = match to_f64(&controller.delay) {

@@ -1,8 +1,8 @@
 //! `simulate --linearize`: the joint form near a state, as a control engineer takes it away.
 
-use crate::{closed_loop, columns};
 use crate::verdict::eigenvalues;
 use crate::words::{number, table};
+use crate::{closed_loop, columns};
 use gyro_model::Model;
 use gyro_runner::motion::{Element, Linear};
 use gyro_sim::JointPlace;

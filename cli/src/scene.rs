@@ -5,7 +5,9 @@ use crate::failure::Failure;
 use crate::progress::Spinner;
 use crate::{controllers, files, inputs, remarks};
 use gyro_model::{ForceKind, JointKind, Method, Model, Move, Number, Rational, Support};
-use gyro_runner::{Approach, Controller, Coordinates, Correction, Input, Offers, Settings, Start, any_varies};
+use gyro_runner::{
+    Approach, Controller, Coordinates, Correction, Input, Offers, Settings, Start, any_varies,
+};
 use std::path::Path;
 
 /// A run to be made.

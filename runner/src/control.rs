@@ -1,9 +1,9 @@
 //! Sampled controllers in a run: what they see is read from the motion, what they set is set in the mechanism.
 
+use gyro_sim::Real;
 use gyro_sim::sampled::{
     Controller as Law, Limited, Period, Pid, Quantised, Sampled, StateFeedback, TransferFunction,
 };
-use gyro_sim::Real;
 use nanoserde::{DeBin, SerBin};
 
 /// A controller of a run.

@@ -90,7 +90,9 @@ pub fn read<T: DeBin>(input: &mut impl BufRead) -> io::Result<Option<T>> {
 mod tests {
     use super::*;
     use crate::motion::Element;
-    use crate::{BodySample, Controller, Coordinates, Correction, Input, Integrator, JointSample, Seen, When, Wiring};
+    use crate::{
+        BodySample, Controller, Coordinates, Correction, Input, Integrator, JointSample, Seen, When, Wiring,
+    };
     use gyro_sim::{JointPlace, Owner, Passage, Statistics};
     use gyro_yardstick::Measured;
 

@@ -1,7 +1,12 @@
 //! The loop.
 
+mod control;
+mod state;
+
+pub(crate) use state::state;
+
 use crate::advice::Plan;
-use crate::control::{Controller, Controllers, Seen};
+use crate::control::{Controller, Controllers};
 use crate::failure::behind;
 use crate::forecast::{self, Forecast};
 use crate::input::{any_varies, set};
@@ -108,7 +113,7 @@ pub fn run_by<M: Partition<Scalar: Real> + Clone + 'static>(
         return Err(Failure::Refused(words));
     }
     let y = state(mechanism, start)?;
-    refuse_singular(mechanism, &y)?;
+    state::refuse_singular(mechanism, &y)?;
     set(mechanism, &start.inputs, 0.0);
     let mut told = Told { tell, last: Instant::now() };
     foretell(mechanism, builder, (&settings, approach), &y, &mut told)?;
@@ -242,15 +247,6 @@ pub fn scheduled(settings: &Settings, approach: &Approach) -> Settings {
     let is_divided = approach.tolerance.is_none() || settings.t_end == 0.0;
     let step = if is_divided { settings.step } else { settings.t_end };
     Settings { correct_every: settings.correct_every.filter(|_| has_moments), step, ..*settings }
-}
-
-/// In a singular pose accelerations are not defined: better to say so than to integrate what is not finite.
-fn refuse_singular<M: Partition>(mechanism: &M, start: &M::State) -> Result<(), Failure> {
-    let t = Scalar::constant(0.0);
-    match mechanism.newton_step(t, &mechanism.independent(t, start), &mut start.clone()) {
-        Err(error @ Error::Singular { .. }) => Err(Failure::run(describe(mechanism, &error))),
-        _ => Ok(()),
-    }
 }
 
 /// The state under way, with its solvers.
@@ -414,43 +410,6 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         }
     }
 
-    /// The time of the motion.
-    fn now(&self) -> M::Scalar {
-        M::Scalar::constant(self.motion.time())
-    }
-
-    /// Lets controllers act that have something to do now.
-    fn control(&mut self) -> Result<(), Error> {
-        let t = self.now();
-        if !self.controllers.is_due(t) {
-            return Ok(());
-        }
-        // The state may have been corrected since it was read.
-        if self.motion.time() > 0.0 {
-            self.read_turns(self.motion.time())?;
-        }
-        let Self { mechanism, motion, controllers, turns, observer, y, .. } = self;
-        let outputs = observer.outputs(mechanism, t, y);
-        let scalar = |joint, k| match turns.coordinate(mechanism, joint, k) {
-            Some(
-                JointCoordinate::Angle { position, rate } | JointCoordinate::Length { position, rate },
-            ) => [position, rate],
-            _ => [Scalar::constant(f64::NAN); 2],
-        };
-        let mut changed = Vec::new();
-        let see = |measured| match measured {
-            Seen::Output(index) => outputs[index],
-            Seen::Coordinate(joint, k) => scalar(joint, k)[0],
-            Seen::Rate(joint, k) => scalar(joint, k)[1],
-        };
-        controllers.act(t, see, |index, value| changed.push((index, value)));
-        for (index, value) in changed {
-            mechanism.set_input(index, value);
-            motion.set_input(index, value.to_f64());
-        }
-        Ok(())
-    }
-
     /// Between two readings the mean rate predicts each angle to within half a turn.
     fn read_turns(&mut self, t: f64) -> Result<(), Error> {
         self.motion.at(self.mechanism, t, &mut self.y)?;
@@ -513,41 +472,6 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         self.summary.chart_switches = self.motion.chart_switches();
         self.summary.statistics = statistics;
     }
-}
-
-/// The state of a start: `(q, v)`, then zero work where the mechanism counts work, then turn references.
-pub(crate) fn state<M: Partition>(mechanism: &M, start: &Start) -> Result<M::State, Failure> {
-    let mut state = mechanism.start();
-    refuse_misfit(mechanism, state.as_ref().len(), start)?;
-    let (known, rest) = state.as_mut().split_at_mut(13 * mechanism.description().bodies.len());
-    let (work, references) = rest.split_at_mut(rest.len() - start.turn_references.len());
-    work.fill(Scalar::constant(0.0));
-    for (element, value) in known.iter_mut().zip(start.positions.iter().chain(&start.velocities)) {
-        *element = Scalar::constant(*value);
-    }
-    for (element, value) in references.iter_mut().zip(&start.turn_references) {
-        *element = Scalar::constant(*value);
-    }
-    Ok(state)
-}
-
-/// At most the work is left of the state when positions, velocities and turn references are taken away.
-fn refuse_misfit<M: Partition>(mechanism: &M, length: usize, start: &Start) -> Result<(), Failure> {
-    let n_bodies = mechanism.description().bodies.len();
-    let found = [start.positions.len(), start.velocities.len(), start.turn_references.len()];
-    let left = length.checked_sub(found.iter().sum());
-    let fits = found[0] == 7 * n_bodies
-        && found[1] == 6 * n_bodies
-        && left.is_some_and(|left| left <= 1)
-        && start.observed_bodies.iter().all(|&body| body < n_bodies);
-    if fits {
-        return Ok(());
-    }
-    Err(Failure::Refused(format!(
-        "the start has {} positions, {} velocities and {} turn references, the mechanism has {n_bodies} bodies and {length} \
-         elements of its state",
-        found[0], found[1], found[2]
-    )))
 }
 
 #[cfg(test)]

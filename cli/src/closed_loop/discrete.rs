@@ -99,7 +99,11 @@ impl<'a> Discrete<'a> {
     pub(super) fn opened(&self, index: usize) -> Opened {
         let (map, computed) = self.map(Some(index));
         let n = self.size;
-        Opened { f: map.columns(0, n).into_owned(), g: map.columns(n, 1).into_owned(), h: computed.columns(0, n).into_owned() }
+        Opened {
+            f: map.columns(0, n).into_owned(),
+            g: map.columns(n, 1).into_owned(),
+            h: computed.columns(0, n).into_owned(),
+        }
     }
 
     /// The state after a period by the state before it and, in the last column, by w, which one controller hands on in
@@ -208,7 +212,9 @@ fn memory(controller: &Controller) -> usize {
 
 /// All instants of the least time after which all controllers sample together again, and that time, s.
 fn instants(controllers: &[Controller]) -> Result<(Vec<Instant>, f64), String> {
-    let too_long = || "the controllers sample together too seldom: choose periods with a short common multiple".to_owned();
+    let too_long = || {
+        "the controllers sample together too seldom: choose periods with a short common multiple".to_owned()
+    };
     let multiple = |a: u128, b: u128| (a / gcd(a, b)).checked_mul(b);
     // Over a common denominator periods are whole numbers.
     let denominators = controllers.iter().map(|controller| u128::from(controller.period[1]));

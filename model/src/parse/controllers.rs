@@ -10,7 +10,7 @@ use super::section::{self, Item, Section};
 use super::tables;
 use crate::diagnostics::Related;
 use crate::validate::{Owner, Place};
-use crate::{Controller, JointCoordinate, Law, Seen, Number, Output, Rational};
+use crate::{Controller, JointCoordinate, Law, Number, Output, Rational, Seen};
 
 const KEYS: [&str; 17] = [
     "name",
@@ -138,7 +138,10 @@ fn controller(
         delay: delay(reader, &section, period.as_ref()),
         period: period.as_ref().and_then(fraction).unwrap_or([1, 1]),
         setpoints,
-        limits: section.get("limits").and_then(|item| numbers(reader, item, 2)).and_then(|l| l.try_into().ok()),
+        limits: section
+            .get("limits")
+            .and_then(|item| numbers(reader, item, 2))
+            .and_then(|l| l.try_into().ok()),
         output_steps,
         input_step: section.number_or(reader, "input_step", 0),
         name,
@@ -298,7 +301,8 @@ fn gains(
     let is_row = |value: &DeValue<'_>| value.as_array().is_some_and(|row| row.len() == n_outputs);
     let Some(rows) = rows.filter(|rows| rows.iter().all(|row| is_row(row.get_ref()))) else {
         let row = format!("[{}]", vec!["0"; n_outputs].join(", "));
-        let what = format!("a matrix of {n_inputs} by {n_outputs}: a row for each input, a column for each output");
+        let what =
+            format!("a matrix of {n_inputs} by {n_outputs}: a row for each input, a column for each output");
         item.wrong_type(reader, &what, &format!("gains = [{}]", vec![row; n_inputs].join(", ")));
         return Vec::new();
     };

@@ -20,7 +20,8 @@ pub(super) fn problems(model: &Model, index: usize, controller: &Controller) -> 
         let message = format!("the transfer function of controller `{name}` is not causal");
         wrong("denominator", message, "its first number is 0".to_owned(), help);
     }
-    if let Some([least, largest]) = controller.limits.as_ref().map(|limits| limits.each_ref().map(|l| model.exact(l)))
+    if let Some([least, largest]) =
+        controller.limits.as_ref().map(|limits| limits.each_ref().map(|l| model.exact(l)))
         && least >= largest
     {
         let label = format!("from {} to {}", shown(&least), shown(&largest));
@@ -47,7 +48,8 @@ pub(crate) fn settings_problems(model: &Model) -> Vec<Problem> {
     let one = || Rational::from_integer(1.into());
     let mut found = Vec::new();
     for (index, controller) in model.controllers.iter().enumerate() {
-        let limits = controller.limits.as_ref().map(|limits| limits.each_ref().map(|limit| model.exact(limit)));
+        let limits =
+            controller.limits.as_ref().map(|limits| limits.each_ref().map(|limit| model.exact(limit)));
         let extremes = limits.unwrap_or_else(|| [-one(), one()]);
         for input in &controller.inputs {
             let refusal = extremes.iter().find_map(|value| model.check_input(*input, value).err());
@@ -57,7 +59,9 @@ pub(crate) fn settings_problems(model: &Model) -> Vec<Problem> {
                 found.push(Problem {
                     place,
                     also: None,
-                    message: format!("controller `{name}` may set the input `{input}` to what it must not be"),
+                    message: format!(
+                        "controller `{name}` may set the input `{input}` to what it must not be"
+                    ),
                     label: words,
                     help: "keep it where it makes sense: limits = [least, largest]".to_owned(),
                 });
