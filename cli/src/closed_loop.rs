@@ -87,9 +87,16 @@ fn is(element: &Element, of_joint: usize, k: usize, is_rate: bool) -> bool {
             if usize::from(*joint) == of_joint && usize::from(*coordinate) == k)
 }
 
+/// Poles nearer to the unit circle than this are on it: double ones come with the root of the rounding.
+const ROUNDING: f64 = 1e-7;
+
 impl Closed {
-    fn is_stable(&self) -> bool {
-        self.poles.iter().all(|pole| pole.norm() < 1.0)
+    fn stability(&self) -> &'static str {
+        match self.poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max) {
+            largest if largest < 1.0 - ROUNDING => "stable",
+            largest if largest <= 1.0 + ROUNDING => "marginal",
+            _ => "unstable",
+        }
     }
 }
 
@@ -118,7 +125,7 @@ pub(crate) fn object(model: &Model, linear: &Linear) -> Option<Value> {
             json!({
                 "period": closed.period,
                 "poles": closed.poles.iter().map(|pole| [pole.re, pole.im]).collect::<Vec<_>>(),
-                "stable": closed.is_stable(),
+                "stability": closed.stability(),
                 "margins": margins.collect::<serde_json::Map<_, _>>(),
             })
         }
@@ -136,9 +143,9 @@ pub(crate) fn text(model: &Model, linear: &Linear) -> String {
         Err(words) => return format!("\nclosed loop: none: {words}\n"),
         Ok(closed) => closed,
     };
-    let stable = if closed.is_stable() { "stable" } else { "unstable" };
-    let period = number(closed.period, DIGITS);
-    let mut text = format!("\nclosed loop, exact over {period} s, without limits and converters: {stable}\n");
+    let (period, stability) = (number(closed.period, DIGITS), closed.stability());
+    let mut text =
+        format!("\nclosed loop, exact over {period} s, without limits and converters: {stability}\n");
     let titles = ["pole", "real", "imaginary", "size", "frequency, Hz", "damping ratio"];
     let mut rows = vec![titles.map(str::to_owned).to_vec()];
     for (index, pole) in closed.poles.iter().enumerate() {

@@ -16,7 +16,7 @@ use crate::sample::{Observer, work_scale};
 use crate::spectrum::fastest_rate;
 use crate::{
     Approach, Coordinates, Correction, Failure, Input, Sample, Schedule, Segment, Settings, Summary, Tracker,
-    describe, describe_in,
+    describe_in,
 };
 use gyro_sim::{
     CorrectedDynamics, Dynamics, Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns,

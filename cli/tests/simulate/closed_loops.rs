@@ -1,7 +1,7 @@
 //! `--linearize` with controllers: poles and margins.
 
 use crate::controllers::smooth;
-use crate::plants::{Law, Plant, exact};
+use crate::plants::{Law, Plant, WHEEL, exact};
 use crate::support::{Folder, json};
 use serde_json::Value;
 use std::fs;
@@ -64,41 +64,6 @@ fn poles_of_closed_loops_are_those_of_exact_motions() {
         }
     }
 }
-
-/// A wheel whose rate is held: an integrator, of which all margins are known.
-pub(super) const WHEEL: &str = r#"format = 1
-name = "wheel"
-[parameters]
-kp = 3
-[inputs]
-torque = 0
-[[body]]
-name = "ground"
-fixed = true
-[[body]]
-name = "wheel"
-mass = 1
-inertia = [0.3, 0.3, 0.5]
-[[joint]]
-name = "shaft"
-kind = "revolute"
-axis = [0, 0, 1]
-zero = [1, 0, 0]
-first = { body = "ground" }
-second = { body = "wheel" }
-[[force]]
-name = "motor"
-kind = "motor"
-joint = "shaft"
-value = "torque"
-[[controller]]
-name = "hold"
-kind = "pid"
-outputs = ["shaft rate"]
-inputs = ["torque"]
-period = 0.05
-kp = "kp"
-"#;
 
 /// L(z) = k ((T − d) + d/z) / (z − 1), with k the gain over the inertia, by hand.
 #[test]

@@ -1,7 +1,6 @@
 //! Controllers of model files: random linear plants in random loops, and what they do not go with.
 
-use crate::closed_loops::WHEEL;
-use crate::plants::{Law, Loop, Plant, difference, exact};
+use crate::plants::{Law, Loop, Plant, WHEEL, difference, exact};
 use crate::support::{Folder, json, model, refused, simulate, xtask};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

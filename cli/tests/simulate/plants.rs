@@ -274,3 +274,38 @@ pub(super) fn difference(found: &Value, (z, forces): &(DVector<f64>, Vec<f64>)) 
     });
     each.map(f64::abs).fold(0.0, f64::max)
 }
+
+/// A wheel whose rate is held: an integrator, of which all margins are known.
+pub(super) const WHEEL: &str = r#"format = 1
+name = "wheel"
+[parameters]
+kp = 3
+[inputs]
+torque = 0
+[[body]]
+name = "ground"
+fixed = true
+[[body]]
+name = "wheel"
+mass = 1
+inertia = [0.3, 0.3, 0.5]
+[[joint]]
+name = "shaft"
+kind = "revolute"
+axis = [0, 0, 1]
+zero = [1, 0, 0]
+first = { body = "ground" }
+second = { body = "wheel" }
+[[force]]
+name = "motor"
+kind = "motor"
+joint = "shaft"
+value = "torque"
+[[controller]]
+name = "hold"
+kind = "pid"
+outputs = ["shaft rate"]
+inputs = ["torque"]
+period = 0.05
+kp = "kp"
+"#;

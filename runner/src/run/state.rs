@@ -2,7 +2,7 @@
 
 use super::Start;
 use crate::{Failure, describe};
-use gyro_sim::{Error, Partition, Real, Scalar};
+use gyro_sim::{Error, Partition, Scalar};
 
 /// The state of a start: `(q, v)`, then zero work where the mechanism counts work, then turn references.
 pub(crate) fn state<M: Partition>(mechanism: &M, start: &Start) -> Result<M::State, Failure> {
