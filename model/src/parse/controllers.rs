@@ -118,12 +118,14 @@ fn controller(
     let example = "outputs = [\"...\"]: joint coordinates, their rates, numbers of outputs";
     let outputs = section.require(reader, "outputs", &title, example);
     let outputs: Option<Vec<Seen>> = outputs.and_then(|item| {
-        words(reader, item)?.into_iter().map(|(item, word)| measured(reader, item, word, known)).collect()
+        let all = words(reader, item)?.into_iter().map(|(item, word)| measured(reader, item, word, known));
+        all.collect::<Vec<_>>().into_iter().collect()
     });
     let example = "inputs = [\"...\"], names of [inputs]";
     let inputs = section.require(reader, "inputs", &title, example);
     let inputs: Option<Vec<usize>> = inputs.and_then(|item| {
-        words(reader, item)?.into_iter().map(|(item, word)| input(reader, item, word)).collect()
+        let all = words(reader, item)?.into_iter().map(|(item, word)| input(reader, item, word));
+        all.collect::<Vec<_>>().into_iter().collect()
     });
     let sizes = outputs.as_ref().map(Vec::len).zip(inputs.as_ref().map(Vec::len));
     let n_outputs = sizes.map_or(1, |sizes| sizes.0);
@@ -343,13 +345,13 @@ fn period(reader: &mut Reader<'_>, section: &Section<'_>, title: &str) -> Option
         let unit = if key == "period" { "s" } else { "Hz" };
         let label = format!("{} {unit}", crate::to_f64(&value));
         let help = format!("write a {} greater than 0", if key == "period" { "time" } else { "frequency" });
-        item.wrong(reader, [format!("the {key} of {title} is not positive"), label, help]);
+        item.wrong(reader, [format!("the `{key}` of {title} is not positive"), label, help]);
         return None;
     }
     let period = if key == "period" { value } else { Rational::one() / value };
     if fraction(&period).is_none() {
         let help = "write it with fewer digits, or as a fraction such as \"1/3000\"".to_owned();
-        let message = format!("the {key} of {title} is no fraction of whole numbers below 2^53");
+        let message = format!("the `{key}` of {title} is no fraction of whole numbers below 2^53");
         item.wrong(reader, [message, "its times could not be told exactly".to_owned(), help]);
         return None;
     }
