@@ -144,6 +144,10 @@ impl<T: Real> Controllers<T> {
         Self(controllers.iter().map(Working::new).collect())
     }
 
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Whether one of them has something to do at a time.
     pub(crate) fn is_due(&self, t: T) -> bool {
         self.0.iter().any(|working| working.sampled.is_due(t))

@@ -366,6 +366,9 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
             let began = Instant::now();
             self.motion.correct(self.mechanism)?;
             self.summary.run_time_s += began.elapsed().as_secs_f64();
+            if !self.controllers.is_empty() {
+                self.read_turns(self.motion.time())?;
+            }
         }
         Ok(())
     }

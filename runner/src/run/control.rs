@@ -16,8 +16,7 @@ impl<M: Partition<Scalar: Real>> Run<'_, M> {
         if !self.controllers.is_due(t) {
             return Ok(());
         }
-        // The state may have been corrected since it was read.
-        if self.motion.time() > 0.0 {
+        if self.motion.time() > self.read_at {
             self.read_turns(self.motion.time())?;
         }
         let Self { mechanism, motion, controllers, turns, observer, y, .. } = self;
