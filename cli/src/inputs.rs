@@ -2,7 +2,7 @@
 
 use crate::args::InputSetting;
 use crate::failure::Failure;
-use crate::{files, words};
+use crate::{controllers, files, words};
 use gyro_model::{Model, Rational};
 use gyro_runner::{Between, Input};
 use std::path::Path;
@@ -16,6 +16,10 @@ pub(crate) fn inputs(model: &Model, given: &[(String, InputSetting)]) -> Result<
             known.iter().position(|other| other == name).ok_or_else(|| unknown(model, name, &known))?;
         if inputs.iter().any(|input| input.index == index) {
             return Err(Failure::Usage(format!("--input gives `{name}` twice")));
+        }
+        if let Some(controller) = controllers::setting(model, index) {
+            let words = format!("--input {name}: the controller `{}` sets this input", controller.name);
+            return Err(Failure::Usage(words));
         }
         let input = match setting {
             InputSetting::Number(value) => Input::constant(index, *value),

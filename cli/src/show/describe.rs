@@ -184,7 +184,7 @@ fn plotted(scene: &Scene, samples: &[Sample]) -> (Vec<Column>, Vec<Reaction>) {
     }
     for (index, input) in model.inputs.iter().enumerate() {
         let unit = columns::input_unit(model, index);
-        let value = |s: &Sample| columns::inputs_at(model, &scene.start.inputs, s.t)[index];
+        let value = |s: &Sample| columns::inputs_at(model, &scene.start, s)[index];
         plots.add(("Inputs", &input.name, "", unit), value);
     }
     plots.energy(model.has_work());

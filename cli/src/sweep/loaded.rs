@@ -4,7 +4,7 @@ use super::vocabulary::vocabulary;
 use crate::args::{Effort, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::scene::{self, Scene};
-use crate::{files, inputs};
+use crate::{controllers, files, inputs};
 use gyro_sweep::study::{self, Files, Study, Unreadable, Vocabulary};
 use std::path::{Path, PathBuf};
 
@@ -30,7 +30,9 @@ impl Files for Beside<'_> {
     type Error = Failure;
 
     fn model(&mut self, path: &str) -> Result<Vocabulary, Failure> {
-        scene::read_counting_work(&self.0.join(path)).map(|model| vocabulary(&model))
+        let model = scene::read_counting_work(&self.0.join(path))?;
+        controllers::refuse(&model, "a study")?;
+        Ok(vocabulary(&model))
     }
 
     fn table(&mut self, path: &str) -> Result<Vec<[f64; 2]>, String> {
