@@ -109,6 +109,7 @@ mod contract;
 pub mod correct;
 mod dual;
 mod error;
+pub mod events;
 pub mod fused;
 #[cfg(feature = "generated")]
 pub mod generated;
