@@ -105,6 +105,7 @@ extern crate self as gyro_sim;
 pub mod admissible;
 mod apart;
 pub mod charts;
+pub mod contact;
 mod contract;
 pub mod correct;
 mod dual;

@@ -61,7 +61,8 @@ mod root;
 mod scan;
 
 pub(crate) use root::root;
-pub(crate) use scan::{Found, scan};
+use scan::scan;
+pub(crate) use scan::{Found, first_falling};
 
 use crate::contract::Storage;
 use crate::integrate::Method;

@@ -27,14 +27,9 @@ pub(crate) fn scan<T: Real, E, const N: usize>(
     mut values: impl FnMut(T) -> Result<[T; N], E>,
     mut tell: impl FnMut(Found<T>) -> Result<ControlFlow<()>, E>,
 ) -> Result<ControlFlow<()>, E> {
-    let zero = T::constant(0.0);
-    let place = |k: u8| T::constant(f64::from(k) / f64::from(PARTS));
-    let mut samples = [[zero; N]; PARTS as usize + 1];
-    for (k, sample) in (0..=PARTS).zip(&mut samples) {
-        *sample = values(place(k))?;
-    }
+    let samples = sampled(&mut values)?;
     for (k, ends) in (0..PARTS).zip(samples.windows(2)) {
-        let part = Part { place: [place(k), place(k + 1)], ends: [ends[0], ends[1]] };
+        let part = Part::new(k, ends);
         let mut found = [[None; 2]; N];
         for (event, found) in found.iter_mut().enumerate() {
             let swing = swing(&samples, event);
@@ -51,11 +46,52 @@ pub(crate) fn scan<T: Real, E, const N: usize>(
     Ok(ControlFlow::Continue(()))
 }
 
+/// The first falling crossing of all functions.
+pub(crate) fn first_falling<T: Real, V: AsRef<[T]>, E>(
+    mut values: impl FnMut(T) -> Result<V, E>,
+) -> Result<Option<Found<T>>, E> {
+    let samples = sampled(&mut values)?;
+    for (k, ends) in (0..PARTS).zip(samples.windows(2)) {
+        let part = Part::new(k, ends);
+        let mut first: Option<Found<T>> = None;
+        for event in 0..samples[0].as_ref().len() {
+            for found in part.crossings(event, swing(&samples, event), &mut values)?.into_iter().flatten() {
+                if !found.rises && first.is_none_or(|first| found.theta < first.theta) {
+                    first = Some(found);
+                }
+            }
+        }
+        if first.is_some() {
+            return Ok(first);
+        }
+    }
+    Ok(None)
+}
+
+fn place<T: Real>(k: u8) -> T {
+    T::constant(f64::from(k) / f64::from(PARTS))
+}
+
+/// The functions at both ends of each part.
+fn sampled<T: Real, V, E>(values: &mut impl FnMut(T) -> Result<V, E>) -> Result<[V; PARTS as usize + 1], E> {
+    Ok([
+        values(place(0))?,
+        values(place(1))?,
+        values(place(2))?,
+        values(place(3))?,
+        values(place(4))?,
+        values(place(5))?,
+        values(place(6))?,
+        values(place(7))?,
+        values(place(8))?,
+    ])
+}
+
 /// By how much a function varies over the step.
-fn swing<T: Real, const N: usize>(samples: &[[T; N]], event: usize) -> T {
-    let (mut least, mut most) = (samples[0][event], samples[0][event]);
+fn swing<T: Real, V: AsRef<[T]>>(samples: &[V], event: usize) -> T {
+    let (mut least, mut most) = (samples[0].as_ref()[event], samples[0].as_ref()[event]);
     for sample in samples {
-        let value = sample[event];
+        let value = sample.as_ref()[event];
         least = if value < least { value } else { least };
         most = if value > most { value } else { most };
     }
@@ -79,23 +115,27 @@ fn take_first<T: Real, const N: usize>(found: &mut [[Option<Found<T>>; 2]; N]) -
 }
 
 /// A part of a step, with the functions at its ends.
-struct Part<T, const N: usize> {
+struct Part<'a, T, V> {
     place: [T; 2],
-    ends: [[T; N]; 2],
+    ends: &'a [V],
 }
 
-impl<T: Real, const N: usize> Part<T, N> {
+impl<'a, T: Real, V: AsRef<[T]>> Part<'a, T, V> {
+    fn new(k: u8, ends: &'a [V]) -> Self {
+        Self { place: [place(k), place(k + 1)], ends }
+    }
+
     /// The crossing of a function between values of different signs, or the two of an excursion.
     fn crossings<E>(
         &self,
         event: usize,
         swing: T,
-        values: &mut impl FnMut(T) -> Result<[T; N], E>,
+        values: &mut impl FnMut(T) -> Result<V, E>,
     ) -> Result<[Option<Found<T>>; 2], E> {
         let zero = T::constant(0.0);
         let [a, b] = self.place;
-        let [fa, fb] = self.ends.map(|end| end[event]);
-        let mut value = |theta: T| Ok(values(theta)?[event]);
+        let [fa, fb] = [0, 1].map(|end: usize| self.ends[end].as_ref()[event]);
+        let mut value = |theta: T| Ok(values(theta)?.as_ref()[event]);
         if (fa < zero && fb >= zero) || (fa > zero && fb <= zero) {
             let theta = root(&mut value, (a, fa), (b, fb))?;
             return Ok([Some(Found { event, theta, rises: fa < zero }), None]);

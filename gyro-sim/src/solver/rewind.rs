@@ -20,6 +20,10 @@ impl<S: Storage<T>, T: Real> Mark<S, T> {
         let t_rest = T::constant(0.0);
         Self { t, t_rest, y: y.clone(), since_correction: 0, statistics: Statistics::default() }
     }
+
+    pub(crate) fn time(&self) -> T {
+        self.t
+    }
 }
 
 impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
@@ -28,6 +32,11 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         (mark.t, mark.t_rest) = (self.t, self.t_rest);
         mark.y.as_mut().copy_from_slice(self.y.as_ref());
         (mark.since_correction, mark.statistics) = (self.since_correction, self.statistics);
+    }
+
+    /// The length of the last step, s.
+    pub(crate) fn last_step(&self) -> T {
+        self.before.2
     }
 
     /// Goes back there. The steps since then count as rejected.
