@@ -369,12 +369,13 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
                 _ => continue,
             };
             let approach = -outward * rates[k];
-            let Contact { restitution, coordinate, rate, ends, .. } = contacts[k];
+            let Contact { restitution, coordinate, ends, .. } = contacts[k];
             if approach < zero {
-                // A flight too short to be told from none.
+                // A flight that is too short to be told from none: what is left of the rate is taken back.
                 if self.stalled > 0 {
-                    (y.as_mut()[coordinate], y.as_mut()[rate]) = (ends[end], zero);
+                    y.as_mut()[coordinate] = ends[end];
                     settled += 1;
+                    *hit = Some(Hit { outward: -outward, restitution: zero });
                 }
                 continue;
             }

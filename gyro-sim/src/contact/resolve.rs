@@ -74,7 +74,9 @@ fn by_newton<T: Real, const N: usize>(
             }
         }
         if best.is_none_or(|(least, ..)| worst < least) {
-            let after = core::array::from_fn(|k| if active[k] { target(k) } else { after[k] });
+            // What the stops determine is exactly that.
+            let is_met = |k: usize| (after[k] - target(k)).abs() <= T::constant(ROUNDING) * scale;
+            let after = core::array::from_fn(|k| if active[k] && is_met(k) { target(k) } else { after[k] });
             best = Some((worst, impulses, after));
         }
         if worst <= T::constant(ROUNDING) * scale {
