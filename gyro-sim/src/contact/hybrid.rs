@@ -1,10 +1,11 @@
 //! The motion: steps, and what happens at their ends.
 
-use super::equations::{Contacts, Forced, Kept, bounds};
+use super::equations::{Contacts, Forced, Kept};
+use super::guards::{Guards, guards, noise, passed};
 use super::resolve::{Hit, impulses, work};
 use super::{Contact, Phase};
 use crate::contract::Storage;
-use crate::events::{Found, first_falling, root};
+use crate::events::{Found, first_falling};
 use crate::integrate::Method;
 use crate::solver::Mark;
 use crate::{Control, Correction, Error, Real, Solver, Statistics, Uncorrected};
@@ -43,19 +44,8 @@ pub struct Hybrid<D, S, T, A, C, const N: usize> {
 const SLOWEST: f64 = 1e-12;
 /// So many events without a step between them mean that there is no consistent way on.
 const MOST_STALLED: u32 = 64;
-/// A root at the beginning of a step is told from a later one by halving so often.
-const HALVINGS: u32 = 48;
 /// The end of a step is brought to an event by so many further steps at most.
 const POLISHES: u32 = 3;
-
-/// A guard of each contact: its two bounds of position or of force, and the rate that friction opposes.
-struct Guards<T, const N: usize>([[T; N]; 3]);
-
-impl<T, const N: usize> AsRef<[T]> for Guards<T, N> {
-    fn as_ref(&self) -> &[T] {
-        self.0.as_flattened()
-    }
-}
 
 /// An event: when, as a fraction of the step, which guards, by kind and contact, and the slope there by the fraction.
 struct Next<T> {
@@ -316,7 +306,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         let phases = self.solver.dynamics().phases;
         let contacts = self.solver.dynamics().contacts;
         let is_due = |kind: usize, k: usize| {
-            guards[kind][k] < zero
+            guards[kind][k] <= zero
                 || next.is_some_and(|(next, h)| {
                     let is_it = next.kind == kind && next.contact == k;
                     is_it || self.is_as_good_as_reached(&contacts[k], phases[k], guards[kind][k], h)
@@ -334,7 +324,8 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
                 y.as_mut()[contact.rate] = zero;
             }
         }
-        self.collide(model, &mut y, [&at_lower, &at_upper]);
+        let hits = self.hits(&mut y, [&at_lower, &at_upper], next.map(|(next, _)| next));
+        self.collide(model, &mut y, &hits);
         let t = self.solver.time();
         self.solver.dynamics_mut().choose(model, (t, &y), &reached, &mut self.scratch[0]);
         self.solver.set_state(&y);
@@ -349,62 +340,73 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         !phase.is_held() && gap.abs() <= T::constant(64.0) * T::EPSILON * (rate * h + place)
     }
 
-    /// Resolves the impacts of coordinates that have reached a stop.
-    fn collide<M>(&mut self, model: &M, y: &mut S, [at_lower, at_upper]: [&[bool; N]; 2])
-    where
-        D: Forced<M, Scalar = T, State = S>,
-    {
+    /// The stops that are hit, those that are rested on and those that are touched; and which end each is.
+    fn hits(
+        &mut self,
+        y: &mut S,
+        [at_lower, at_upper]: [&[bool; N]; 2],
+        next: Option<&Next<T>>,
+    ) -> [Option<(Hit<T>, usize)>; N] {
         let (zero, one) = (T::constant(0.0), T::constant(1.0));
-        let equations = self.solver.dynamics();
-        let contacts = &equations.contacts;
-        let rates = contacts.map(|contact| y.as_ref()[contact.rate]);
-        let mut settled = 0;
-        let mut hits: [Option<Hit<T>>; N] = [None; N];
-        for (k, hit) in hits.iter_mut().enumerate() {
-            let (outward, end) = match equations.phases[k] {
+        let Contacts { contacts, phases, .. } = self.solver.dynamics();
+        core::array::from_fn(|k| {
+            let (outward, end) = match phases[k] {
                 Phase::AtLower => (one, 0),
                 Phase::AtUpper => (-one, 1),
                 _ if at_lower[k] => (one, 0),
                 _ if at_upper[k] => (-one, 1),
-                _ => continue,
+                _ => return None,
             };
-            let approach = -outward * rates[k];
-            let Contact { restitution, coordinate, ends, .. } = contacts[k];
+            let Contact { restitution, coordinate, rate, ends, .. } = contacts[k];
+            let approach = -outward * y.as_ref()[rate];
+            let (x, record) = (&mut y.as_mut()[coordinate], &mut self.record);
+            // Steps of fixed length end beyond.
+            if next.is_none() && (*x - ends[end]) * outward < zero {
+                *x = ends[end];
+            }
             if approach < zero {
-                // A flight that is too short to be told from none: what is left of the rate is taken back.
-                if self.stalled > 0 {
-                    y.as_mut()[coordinate] = ends[end];
-                    settled += 1;
-                    *hit = Some(Hit { outward: -outward, restitution: zero });
-                }
-                continue;
+                // A flight that is too short to be told from none is taken back; another stop that is touched is not
+                // to be passed.
+                let is_own = next.is_some_and(|next| next.kind < 2 && next.contact == k);
+                let is_taken_back = self.stalled > 0 && is_own;
+                record.settled += u64::from(is_taken_back);
+                let outward = if is_taken_back { -outward } else { outward };
+                return Some((Hit { outward, restitution: zero }, end));
             }
             let fastest = &mut self.fastest[k];
             *fastest = if approach > *fastest { approach } else { *fastest };
             let is_slow = restitution * approach <= T::constant(SLOWEST) * *fastest;
-            settled += u64::from(is_slow && approach > zero && restitution > zero);
-            self.record.impacts += u64::from(approach > zero);
-            let restitution = if is_slow { zero } else { restitution };
-            // What rests is on the stop, to the last bit; so is what steps of fixed length have taken beyond it.
-            let is_beyond = (y.as_ref()[coordinate] - ends[end]) * outward < zero;
-            if is_slow || restitution == zero || is_beyond {
-                y.as_mut()[coordinate] = ends[end];
-            }
-            *hit = Some(Hit { outward, restitution });
+            record.settled += u64::from(is_slow && approach > zero && restitution > zero);
+            record.impacts += u64::from(approach > zero);
+            Some((Hit { outward, restitution: if is_slow { zero } else { restitution } }, end))
+        })
+    }
+
+    /// Resolves the impacts of coordinates that have reached a stop.
+    fn collide<M>(&mut self, model: &M, y: &mut S, hits: &[Option<(Hit<T>, usize)>; N])
+    where
+        D: Forced<M, Scalar = T, State = S>,
+    {
+        let zero = T::constant(0.0);
+        let equations = self.solver.dynamics();
+        let contacts = &equations.contacts;
+        let rates = contacts.map(|contact| y.as_ref()[contact.rate]);
+        let mut after = rates;
+        if hits.iter().zip(rates).any(|(hit, rate)| hit.is_some() && rate != zero) {
+            let t = self.solver.time();
+            let [base, pushed] = &mut self.scratch;
+            let local = equations.local(model, (t, y), &hits.map(|hit| hit.is_some()), base);
+            let outcome = impulses(&local.compliance, &rates, &hits.map(|hit| hit.map(|(hit, _)| hit)));
+            self.record.lost = self.record.lost - work(&outcome, &rates);
+            equations.push(model, (t, y), &outcome.0, [base, pushed]);
+            after = outcome.1;
         }
-        self.record.settled += settled;
-        if hits.iter().zip(rates).all(|(hit, rate)| hit.is_none() || rate == zero) {
-            return;
-        }
-        let t = self.solver.time();
-        let [base, pushed] = &mut self.scratch;
-        let local = equations.local(model, (t, y), &hits.map(|hit| hit.is_some()), base);
-        let outcome = impulses(&local.compliance, &rates, &hits);
-        self.record.lost = self.record.lost - work(&outcome, &rates);
-        equations.push(model, (t, y), &outcome.0, [base, pushed]);
-        for (k, hit) in hits.iter().enumerate() {
-            if hit.is_some() {
-                y.as_mut()[contacts[k].rate] = outcome.1[k];
+        for ((contact, hit), after) in contacts.iter().zip(hits).zip(after) {
+            let Some((_, end)) = hit else { continue };
+            y.as_mut()[contact.rate] = after;
+            // What rests is on the stop, to the last bit.
+            if after == zero {
+                y.as_mut()[contact.coordinate] = contact.ends[*end];
             }
         }
     }
@@ -415,67 +417,4 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
             self.record.caught += u64::from(!before.is_held() && now == Phase::Sticks);
         }
     }
-}
-
-/// All guards: positive while the phases hold.
-fn guards<M, D, T: Real, const N: usize>(
-    equations: &Contacts<D, T, N>,
-    model: &M,
-    (t, y): (T, &D::State),
-    scratch: &mut D::State,
-) -> Guards<T, N>
-where
-    D: Forced<M, Scalar = T>,
-{
-    let infinite = T::constant(f64::INFINITY);
-    let largest = T::constant(f64::from(f32::MAX));
-    let some = |gap: T| if gap < infinite { gap } else { largest };
-    let forces = equations.forces(model, (t, y), scratch);
-    let mut guards = [[largest; N]; 3];
-    for (k, contact) in equations.contacts.iter().enumerate() {
-        let (x, rate) = (y.as_ref()[contact.coordinate], y.as_ref()[contact.rate]);
-        let phase = equations.phases[k];
-        let (value, [low, high]) =
-            if phase.is_held() { (forces[k], bounds(contact, phase)) } else { (x, contact.ends) };
-        (guards[0][k], guards[1][k]) = (some(value - low), some(high - value));
-        match phase {
-            Phase::Up => guards[2][k] = rate,
-            Phase::Down => guards[2][k] = -rate,
-            _ => {}
-        }
-    }
-    Guards(guards)
-}
-
-/// How far rounding may take a guard below zero while it does not go there.
-fn noise<T: Real>(contact: &Contact<T>, kind: usize, begin: T) -> T {
-    let end = contact.ends.get(kind).map_or(T::constant(0.0), |end| end.abs());
-    let rounding = if end.is_finite() { T::constant(4.0) * T::EPSILON * end } else { T::constant(0.0) };
-    rounding - (begin + begin)
-}
-
-/// When a guard that is zero at a step's beginning, or beyond, is passed in it.
-fn passed<T: Real>(mut value: impl FnMut(T) -> Result<T, Error>, noise: T) -> Result<Option<T>, Error> {
-    let (zero, half) = (T::constant(0.0), T::constant(0.5));
-    let limit = -noise;
-    let place = |k: u8| T::constant(f64::from(k) / 8.0);
-    for k in 1..=8 {
-        let there = value(place(k))?;
-        if there > zero {
-            return Ok(None);
-        }
-        if there < limit {
-            let mut beyond = (place(k), there);
-            for _ in 0..HALVINGS {
-                let nearer = beyond.0 * half;
-                let there = value(nearer)?;
-                if there > zero {
-                    return Ok(Some(root(&mut value, (nearer, there), beyond)?));
-                }
-                beyond = (nearer, there);
-            }
-            return Ok(Some(zero));
-        }
-    }
-    Ok(None)
 }

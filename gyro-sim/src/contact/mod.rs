@@ -66,6 +66,7 @@
 //! step.
 
 mod equations;
+mod guards;
 mod hybrid;
 mod resolve;
 mod small;

@@ -9,7 +9,7 @@ use crate::Real;
 const ROUNDING: f64 = 1e-10;
 
 /// A stop that is hit.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hit<T> {
     /// The direction away from the stop: 1 or −1.
     pub(super) outward: T,
