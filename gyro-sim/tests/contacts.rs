@@ -33,18 +33,17 @@ fn energy(y: &[f64; 2]) -> f64 {
 #[test]
 #[ignore = "a million impacts, twice: minutes, optimised"]
 fn a_million_impacts_of_a_pendulum_keep_what_restitution_leaves() {
-    for e in [1.0, 1.0 - 1e-5] {
+    for e in [1.0, 1.0 - 1e-6] {
         let contact = Contact::new(0, 1).with_stops([0.0, f64::INFINITY], e).unwrap();
         let start = [1.0, 0.0];
-        let control =
-            Control { budget: u64::MAX, largest_step: 0.1, ..Control::default().with_tolerance(1e-15) };
+        let control = Control { budget: u64::MAX, ..Control::default().with_tolerance(1e-15) };
         let mut motion =
             Hybrid::new(Pendulum, [contact], Dop853::new(&start), 0.0, &start).with_control(control);
-        while motion.record().impacts < 100_000 {
+        while motion.record().impacts < 1_000_000 {
             motion.step_towards(&(), f64::MAX).unwrap();
         }
         let found = energy(motion.state());
-        let exact = found / (energy(&start) * libm::exp(2e5 * libm::log(e))) - 1.0;
+        let exact = found / (energy(&start) * libm::exp(2e6 * libm::log(e))) - 1.0;
         let ledger = (found + motion.record().lost) / energy(&start) - 1.0;
         println!("e = {e}: {exact:e} from what restitution leaves, {ledger:e} from the record");
         assert!(exact.abs() < 1e-9 && ledger.abs() < 1e-9);

@@ -1,5 +1,7 @@
 //! Motions with contacts that are known piece by piece.
 
+mod loops;
+
 use super::resolve::{Hit, impulses, work};
 use super::{Contact, Forced, Hybrid, Phase};
 use crate::{Control, Dop853, Kutta4, Ode, Tsit5};
@@ -371,4 +373,34 @@ fn friction_on_coupled_coordinates_is_consistent_and_agrees_with_fixed_steps() {
         }
     }
     assert!(caught > 40, "{caught}");
+}
+
+#[test]
+fn sticking_costs_less_than_a_smooth_law() {
+    let (stiffness, kinetic, at_rest, t_end) = (1.0, 0.5, 1.0, 40.0);
+    let start = [0.0, 0.0];
+    let count = core::cell::Cell::new(0_u32);
+    let spring = |t: f64, x: f64| {
+        count.set(count.get() + 1);
+        -stiffness * (x + BELT * t)
+    };
+    let control = Control::default().with_tolerance(1e-9);
+    let contact = Contact::new(0, 1).with_friction(kinetic, at_rest).unwrap();
+    let motion = Mass(|t, x, _| spring(t, x));
+    let mut exact = Hybrid::new(motion, [contact], Dop853::new(&start), 0.0, &start).with_control(control);
+    exact.advance_to(&(), t_end).unwrap();
+    let of_exact = count.replace(0);
+    // The smooth law creeps by its width over the time that it sticks, and yet is off by 1e4 times as much.
+    let width = 1e-5;
+    let smooth = Mass(|t, x, v: f64| {
+        let level = kinetic + (at_rest - kinetic) * libm::exp(-v * v / (1e4 * width * width));
+        spring(t, x) - level * libm::tanh(v / width)
+    });
+    let mut smooth = crate::Solver::new(smooth, Tsit5::new(&start), 0.0, &start).with_control(control);
+    smooth.advance_to(&(), t_end).unwrap();
+    let of_smooth = count.get();
+    let expected = Oscillator { stiffness, kinetic, at_rest }.at(t_end) - BELT * t_end;
+    assert!((exact.state()[0] - expected).abs() < 1e-9);
+    assert!((smooth.state()[0] - expected).abs() > 1e-9);
+    assert!(50 * of_exact < of_smooth, "{of_exact} evaluations for {of_smooth}");
 }
