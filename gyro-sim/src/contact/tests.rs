@@ -4,7 +4,7 @@ mod loops;
 
 use super::resolve::{Hit, impulses, work};
 use super::{Contact, Forced, Hybrid, Phase};
-use crate::{Control, Dop853, Kutta4, Ode, Tsit5};
+use crate::{Control, Dop853, Kutta4, Ode, Tsit5, Uncorrected};
 use core::ops::Range;
 
 const GRAVITY: f64 = 9.81;
@@ -60,15 +60,13 @@ fn a_bouncing_mass_comes_to_rest_at_its_zeno_time() {
 }
 
 /// A pendulum of one kilogram and one metre, whose stop is at its lowest point.
-fn pendulum(
-    e: f64,
-    control: Control,
-) -> Hybrid<Mass<impl Fn(f64, f64, f64) -> f64>, [f64; 2], f64, Dop853<[f64; 2], f64>, crate::Uncorrected, 1>
-{
+type Pendulum = Hybrid<Mass<fn(f64, f64, f64) -> f64>, [f64; 2], f64, Dop853<[f64; 2], f64>, Uncorrected, 1>;
+
+fn pendulum(e: f64, control: Control) -> Pendulum {
     let contact = Contact::new(0, 1).with_stops([0.0, f64::INFINITY], e).unwrap();
     let start = [1.0, 0.0];
-    Hybrid::new(Mass(|_, x, _| -libm::sin(x)), [contact], Dop853::new(&start), 0.0, &start)
-        .with_control(control)
+    let motion: Mass<fn(f64, f64, f64) -> f64> = Mass(|_, x, _| -libm::sin(x));
+    Hybrid::new(motion, [contact], Dop853::new(&start), 0.0, &start).with_control(control)
 }
 
 fn energy(y: &[f64; 2]) -> f64 {
@@ -337,7 +335,7 @@ fn stops_reached_in_one_instant_are_resolved_together() {
 fn friction_on_coupled_coordinates_is_consistent_and_agrees_with_fixed_steps() {
     let mut random = Random(17);
     let mut caught = 0;
-    for case in 0..40 {
+    for case in 0..30 {
         let (cart, start) = random_cart(&mut random);
         let contacts = [0, 1].map(|k| {
             let kinetic = random.between(0.1, 1.5);
@@ -364,15 +362,15 @@ fn friction_on_coupled_coordinates_is_consistent_and_agrees_with_fixed_steps() {
         }
         caught += motion.record().caught;
         let mut fixed = Hybrid::new(cart, contacts, Kutta4::new(&start), 0.0, &start);
-        for _ in 0..60_000 {
-            fixed.step(&(), 5e-5).unwrap();
+        for _ in 0..30_000 {
+            fixed.step(&(), 1e-4).unwrap();
         }
         for k in 0..2 {
             let difference = fixed.state()[k] - motion.state()[k];
             assert!(difference.abs() < 5e-3, "case {case}: {:?} {:?}", fixed.state(), motion.state());
         }
     }
-    assert!(caught > 40, "{caught}");
+    assert!(caught > 30, "{caught}");
 }
 
 #[test]
@@ -391,7 +389,7 @@ fn sticking_costs_less_than_a_smooth_law() {
     exact.advance_to(&(), t_end).unwrap();
     let of_exact = count.replace(0);
     // The smooth law creeps by its width over the time that it sticks, and yet is off by 1e4 times as much.
-    let width = 1e-5;
+    let width = 1e-4;
     let smooth = Mass(|t, x, v: f64| {
         let level = kinetic + (at_rest - kinetic) * libm::exp(-v * v / (1e4 * width * width));
         spring(t, x) - level * libm::tanh(v / width)
