@@ -5,6 +5,7 @@ mod control;
 mod passages;
 mod past;
 mod poses;
+mod rewind;
 
 use crate::contract::Storage;
 use crate::correct::{check_finite, check_time};
@@ -17,6 +18,7 @@ use passages::Nearness;
 pub use passages::Passage;
 use past::Past;
 use poses::{Approach, Watch};
+pub(crate) use rewind::Mark;
 
 /// A simulation in progress: equations, a method, a correction, the time and the state.
 ///
@@ -258,19 +260,17 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         A: Method<D, M>,
         C: Correction<D, M>,
     {
-        let (start, y, h) = &self.before;
+        let start = self.before.0;
         if t >= self.t {
             out.as_mut().copy_from_slice(self.y.as_ref());
             return Ok(());
         }
         // What the method holds are the slopes of its last attempt.
-        if !(self.is_kept || self.leap.is_some()) || !(*start..=self.t).contains(&t) {
+        if !(self.is_kept || self.leap.is_some()) || !(start..=self.t).contains(&t) {
             return Err(Error::InvalidEndTime { t: self.t.to_f64(), t_end: t.to_f64() });
         }
-        if !(self.is_prepared || self.leap.is_some()) {
-            let system = System { dynamics: &self.dynamics, model: system };
-            self.method.prepare(system, *start, *h, y, &mut self.statistics.work);
-            self.is_prepared = true;
+        if self.leap.is_none() {
+            self.prepare_interpolation(system);
         }
         self.between(t, out);
         match self.correction.correct(system, t, out) {
@@ -282,6 +282,21 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
                 Ok(())
             }
             outcome => outcome,
+        }
+    }
+
+    /// Prepares the method for states within the last step, once.
+    fn prepare_interpolation<M>(&mut self, system: &M)
+    where
+        D: Ode<M, Scalar = T, State = S>,
+        A: Method<D, M>,
+        C: Correction<D, M>,
+    {
+        if !self.is_prepared {
+            let (start, y, h) = &self.before;
+            let system = System { dynamics: &self.dynamics, model: system };
+            self.method.prepare(system, *start, *h, y, &mut self.statistics.work);
+            self.is_prepared = true;
         }
     }
 
