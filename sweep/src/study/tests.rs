@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::{Distribution, Draw};
+use gyro_runner::Between;
 
 struct Bench;
 
@@ -22,8 +23,13 @@ impl Files for Bench {
         })
     }
 
-    fn table(&mut self, path: &str) -> Result<Vec<[f64; 2]>, String> {
-        if path == "a.csv" { Ok(vec![[0.0, 1.0], [1.0, 2.0]]) } else { Err("no such file".to_owned()) }
+    fn table(&mut self, input: usize, path: &str) -> Result<Input, String> {
+        let rows = vec![[0.0, 1.0], [1.0, 2.0]];
+        if path == "a.csv" {
+            Ok(Input::new(input, rows, Between::Held))
+        } else {
+            Err("no such file".to_owned())
+        }
     }
 }
 
@@ -79,7 +85,9 @@ fn everything_can_be_said() {
     assert_eq!((study.series.len(), study.quantiles), (2, 1));
     assert_eq!(study.keep.numbers(), names.len());
     assert_eq!(study.targets[3].0, "hinge start");
-    assert!(matches!(&study.plan.targets[2], Target::Table(0, tables) if tables.len() == 2));
+    assert!(
+        matches!(&study.plan.targets[2], Target::Table(tables) if tables.len() == 2 && tables[0].index == 0)
+    );
 }
 
 #[test]
