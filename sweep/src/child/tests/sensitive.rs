@@ -45,6 +45,16 @@ fn numbers(job: &Job, rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     all[0].rows().map(|(_, numbers, _)| numbers.to_vec()).collect()
 }
 
+/// At which samples the extremes of β are, and the first of α beyond its level: of the series of all columns.
+fn samples_of(job: &Job, row: &[f64]) -> [usize; 3] {
+    let series = &row[job.keep.numbers()..];
+    let level = job.keep.passages[0].level;
+    let column = |k: usize| series.iter().skip(k).step_by(3).copied();
+    let first = |is: &dyn Fn(f64) -> bool, k| column(k).position(is).unwrap_or(usize::MAX);
+    let ends = [f64::min, f64::max].map(|end| column(1).reduce(end).unwrap());
+    [first(&|x| x == ends[0], 1), first(&|x| x == ends[1], 1), first(&|x| x >= level, 0)]
+}
+
 /// The distance of differences, in parts of a target's scale.
 const APART: f64 = 2e-3;
 
@@ -72,7 +82,7 @@ proptest! {
         let mut job = Job { approach, settings, ..job };
         // Two passages and extremes of other quantities than last values.
         job.keep.finals = vec![0, 2];
-        job.keep.series = Vec::new();
+        job.keep.series = vec![0, 1, 2];
         for (target, part) in starts.iter().zip([parts.0, parts.1, parts.2]) {
             let index = job.plan.targets.len();
             job.plan.targets.push(target.clone());
@@ -92,7 +102,7 @@ proptest! {
             let count = job.keep.numbers();
             let plain = numbers(&job, vec![values.clone()]);
             let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-            prop_assert_eq!(bits(&row[..count]), bits(&plain[0]));
+            prop_assert_eq!(bits(&row[..count]), bits(&plain[0][..count]));
             for target in 0..n {
                 let h = APART * job.plan.scale(target);
                 let shifted = |parts: f64| {
@@ -101,14 +111,14 @@ proptest! {
                     values
                 };
                 let near = numbers(&job, [-2.0, -1.0, 1.0, 2.0].map(shifted).to_vec());
+                // Where an extreme or a passage moves on to another sample it has a kink.
+                let is_kinked = near.iter().any(|row| samples_of(&job, row) != samples_of(&job, &plain[0]));
                 for number in 0..count {
                     let [a, b, c, d] = [0, 1, 2, 3].map(|k| near[k][number]);
                     let expected = (8.0 * (c - b) - (d - a)) / (12.0 * h) * job.plan.scale(target);
-                    // Where an extreme or a passage moves on to another sample it has a kink: its second differences
-                    // tell.
-                    let bend = (d - 2.0 * c + b) - (c - 2.0 * b + a);
                     let found = row[count + number * n + target] * job.plan.scale(target);
-                    if expected.is_nan() || bend.abs() > 1e-10 + 1e-3 * (d - a).abs() {
+                    if is_kinked || expected.is_nan() {
+                        prop_assert!(is_kinked || found.is_nan());
                         continue;
                     }
                     judged += 1;
@@ -119,7 +129,7 @@ proptest! {
                 }
             }
         }
-        prop_assert!(judged > 1, "{} derivatives were judged", judged);
+        prop_assert!(judged > 0 || packed.count == 1, "{} derivatives were judged", judged);
     }
 }
 
@@ -192,7 +202,6 @@ fn derivatives_that_fail_are_named() {
     let job = Job { plan, keep, settings, approach, parameters, start, block: 2, measure: None };
     let found = sensitive(&job, &Unit { blocks: vec![0], ..Unit::default() }, true);
     let rows: Vec<_> = found.rows().collect();
-    println!("{:?}", found.errors);
     assert_eq!(rows[1].2, Some("no"));
     let numbers = job.keep.numbers();
     assert!(rows[1].1[numbers..numbers + 2].iter().all(|x| x.is_nan()));
