@@ -305,7 +305,8 @@ fn gains(
         let row = format!("[{}]", vec!["0"; n_outputs].join(", "));
         let what =
             format!("a matrix of {n_inputs} by {n_outputs}: a row for each input, a column for each output");
-        item.wrong_type(reader, &what, &format!("gains = [{}]", vec![row; n_inputs].join(", ")));
+        let example = vec![row; n_inputs].join(", ");
+        item.wrong_type_with(reader, &what, format!("write [{example}] in place of this, with your numbers"));
         return Vec::new();
     };
     let rows = rows.iter().map(|value| numbers(reader, Item { value, ..item }, n_outputs));
