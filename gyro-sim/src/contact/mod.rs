@@ -68,11 +68,13 @@
 mod equations;
 mod guards;
 mod hybrid;
+mod joint;
 mod resolve;
 mod small;
 
-pub use equations::{Contacts, Forced, JointInputs, Kept};
+pub use equations::{Contacts, Forced, Kept};
 pub use hybrid::{Hybrid, Record};
+pub use joint::JointInputs;
 
 use crate::Real;
 
