@@ -49,9 +49,10 @@
 //!
 //! # What is solved when phases change
 //! * **Impacts.** All contacts that are hit, and those rested on, at one instant are resolved together: impulses P with
-//!   the rates `u⁺ = u⁻ + W P` after them, P ≥ 0, `u⁺ + e u⁻ ≥ 0`, one of both zero (outward positive). Were this to
-//!   increase the kinetic energy, as unequal restitutions of coupled stops can, all take the smallest of them. Dry
-//!   friction has no impulse: a coordinate that sticks is set free by one that reaches it.
+//!   the rates `u⁺ = u⁻ + W P` after them, P ≥ 0, `u⁺ + e u⁻ ≥ 0`, one of both zero (outward positive). A stop that is
+//!   touched but being left is not to be passed, `u⁺ ≥ 0`. Where that has no solution, or would increase the kinetic
+//!   energy, as it can with stops that are being left, nothing rebounds. Dry friction has no impulse: a coordinate that
+//!   sticks is set free by one that reaches it.
 //! * **Rest.** Where several coordinates have a rate of zero, each may be held, by a force within its bounds, or move up
 //!   or down, with an acceleration that does so. All combinations are tried, those that hold most first, and the first
 //!   is taken that is consistent; a coordinate whose bound was just reached is tried moving first. So the work is
