@@ -64,6 +64,14 @@ fn bars_of_a_loop_that_hit_stops_keep_a_ledger_of_energy() {
             motion.step_towards(&mechanism, 5.0).unwrap();
             let now = energy(&mechanism, motion.time(), motion.state());
             worst = worst.max((now + motion.record().lost - before).abs());
+            for (contact, (phase, place)) in motion.phases().iter().zip([crank, rocker]).enumerate() {
+                let [x, rate] = place.map(|place| motion.state()[place]);
+                let end = [start[crank[0]] + 1.3, start[rocker[0]] - 0.2][contact];
+                assert!(
+                    !phase.is_held() || (x, rate) == (end, 0.0) || *phase == Phase::AtLower && contact == 0,
+                    "{phase:?} {x} {rate}"
+                );
+            }
             rested |= motion.phases().iter().any(|phase| matches!(phase, Phase::AtLower | Phase::AtUpper));
         }
         assert!(worst < 1e-11 * before, "{e:?}: {worst:e} J of {before} J");
