@@ -36,8 +36,8 @@ pub(super) struct Local<T, const N: usize> {
     pub(super) compliance: [[T; N]; N],
 }
 
-/// So large a force that nothing else counts beside it: what it adds is a unit force's times it, to rounding. A power of
-/// two.
+/// So large a force that nothing else counts beside it: what it adds is a unit force's times it, to rounding. A power
+/// of two.
 pub(super) const LARGE: f64 = 1_099_511_627_776.0;
 
 impl<D, T: Real, const N: usize> Contacts<D, T, N> {
