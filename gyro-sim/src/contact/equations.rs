@@ -2,7 +2,7 @@
 
 use super::small::solve;
 use super::{Contact, Phase};
-use crate::{Clearance, Correction, Error, Joint, JointSpace, Ode, Real};
+use crate::{Clearance, Correction, Error, Ode, Real};
 use core::ops::Range;
 
 /// Equations under forces along the coordinates of contacts. Accelerations are affine in the forces; positions' slopes
@@ -36,8 +36,8 @@ pub(super) struct Local<T, const N: usize> {
     pub(super) compliance: [[T; N]; N],
 }
 
-/// So large a force that nothing else counts beside it: what it adds is a unit force's times it, to rounding. A power of
-/// two.
+/// So large a force that nothing else counts beside it: what it adds is a unit force's times it, to rounding. A power
+/// of two.
 pub(super) const LARGE: f64 = 1_099_511_627_776.0;
 
 impl<D, T: Real, const N: usize> Contacts<D, T, N> {
@@ -153,39 +153,6 @@ where
     }
     fn clearance(&self, model: &M, t: T, y: &D::State) -> Option<Clearance<T>> {
         self.0.clearance(model, t, y)
-    }
-}
-
-/// The equations of motion in joint coordinates, with an input for each contact: a force of the model along the
-/// contact's coordinate, of one newton, or newton metre, for a value of one.
-#[derive(Clone, Copy, Debug)]
-pub struct JointInputs<const N: usize> {
-    /// The index of each contact's input among the model's.
-    pub inputs: [usize; N],
-}
-
-impl<M: JointSpace, const N: usize> Ode<M> for JointInputs<N> {
-    type Scalar = M::Scalar;
-    type State = M::Joints;
-
-    fn derivative(&self, model: &M, t: M::Scalar, y: &M::Joints, dy: &mut M::Joints) {
-        Joint.derivative(model, t, y, dy);
-    }
-}
-
-impl<M: JointSpace + Clone, const N: usize> Forced<M> for JointInputs<N> {
-    fn rates(&self, model: &M) -> Range<usize> {
-        let layout = model.joint_layout();
-        let n = layout.n_coordinates();
-        n..n + layout.n_rates()
-    }
-
-    fn forced(&self, model: &M, t: M::Scalar, y: &M::Joints, forces: &[M::Scalar], dy: &mut M::Joints) {
-        let mut model = model.clone();
-        for (input, force) in self.inputs.iter().zip(forces) {
-            model.set_input(*input, *force);
-        }
-        model.joint_derivative(t, y, dy);
     }
 }
 

@@ -8,8 +8,8 @@ use crate::{Error, Real};
 /// A root at the beginning of a step is told from a later one by halving so often.
 const HALVINGS: u32 = 48;
 
-/// The guards of all contacts: what is left to the lower and the upper bound, of position or of force, and the rate that
-/// friction opposes.
+/// The guards of all contacts: what is left to the lower and the upper bound, of position or of force, and the rate
+/// that friction opposes.
 pub(super) struct Guards<T, const N: usize>(pub(super) [[T; N]; 3]);
 
 impl<T, const N: usize> AsRef<[T]> for Guards<T, N> {

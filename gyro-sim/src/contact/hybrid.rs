@@ -166,6 +166,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         self.begin(model);
         self.solver.mark(&mut self.mark);
         self.solver.step_towards(model, t_end)?;
+        self.pin();
         let h = self.solver.last_step();
         let Some(next) = self.find(model)? else {
             self.stalled = 0;
@@ -191,7 +192,9 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         C: Correction<D, M>,
     {
         self.begin(model);
+        self.solver.mark(&mut self.mark);
         self.solver.step(model, h)?;
+        self.pin();
         let guards = self.guards(model);
         if guards.as_ref().iter().any(|guard| *guard < T::constant(0.0)) {
             self.settle(model, None);
@@ -206,6 +209,17 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         if !self.is_begun {
             self.is_begun = true;
             self.settle(model, None);
+        }
+    }
+
+    /// Closing loops moves all coordinates by rounding, but not those that are held.
+    fn pin(&mut self) {
+        let (contacts, phases) = (self.solver.dynamics().contacts, self.solver.dynamics().phases);
+        for (contact, phase) in contacts.iter().zip(phases) {
+            if phase.is_held() {
+                self.solver.pin(&self.mark, contact.coordinate);
+                self.solver.pin(&self.mark, contact.rate);
+            }
         }
     }
 
@@ -292,6 +306,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     {
         self.solver.rewind(&self.mark);
         self.solver.step(model, h)?;
+        self.pin();
         Ok(self.guards(model).0[next.kind][next.contact])
     }
 

@@ -1,10 +1,10 @@
 //! Rigid stops and dry friction that sticks, on coordinates of a system: motions in phases, with events between them.
 //!
 //! A [`Contact`] acts along one coordinate. It may stop the coordinate at two ends, each unilateral: the coordinate
-//! *hits* it, with an impulse that reverses the rate by Newton's law of restitution; *rests* on it, held by a force that
-//! only pushes; and is *let go* when the force would have to pull. And it may rub: a coordinate that moves is opposed by
-//! the kinetic level of friction, and one that is at rest *sticks*, held by whatever force it takes as long as this is
-//! below the static level.
+//! *hits* it, with an impulse that reverses the rate by Newton's law of restitution; *rests* on it, held by a force
+//! that only pushes; and is *let go* when the force would have to pull. And it may rub: a coordinate that moves is
+//! opposed by the kinetic level of friction, and one that is at rest *sticks*, held by whatever force it takes as long
+//! as this is below the static level.
 //!
 //! A coordinate that is held has a rate of zero and an acceleration of zero, not small ones: it does not move by one
 //! bit. Its force F makes it so, `W F + b = 0`, with b the accelerations of the coordinates without these forces and W
@@ -49,12 +49,13 @@
 //!
 //! # What is solved when phases change
 //! * **Impacts.** All contacts that are hit, and those rested on, at one instant are resolved together: impulses P with
-//!   the rates `u⁺ = u⁻ + W P` after them, P ≥ 0, `u⁺ + e u⁻ ≥ 0`, one of both zero (outward positive). Were this to
-//!   increase the kinetic energy, as unequal restitutions of coupled stops can, all take the smallest of them. Dry
-//!   friction has no impulse: a coordinate that sticks is set free by one that reaches it.
-//! * **Rest.** Where several coordinates have a rate of zero, each may be held, by a force within its bounds, or move up
-//!   or down, with an acceleration that does so. All combinations are tried, those that hold most first, and the first
-//!   is taken that is consistent; a coordinate whose bound was just reached is tried moving first. So the work is
+//!   the rates `u⁺ = u⁻ + W P` after them, P ≥ 0, `u⁺ + e u⁻ ≥ 0`, one of both zero (outward positive). A stop that is
+//!   touched but being left is not to be passed, `u⁺ ≥ 0`. Where that has no solution, or would increase the kinetic
+//!   energy, as it can with stops that are being left, nothing rebounds. Dry friction has no impulse: a coordinate that
+//!   sticks is set free by one that reaches it.
+//! * **Rest.** Where several coordinates have a rate of zero, each may be held, by a force within its bounds, or move
+//!   up or down, with an acceleration that does so. All combinations are tried, those that hold most first, and the
+//!   first is taken that is consistent; a coordinate whose bound was just reached is tried moving first. So the work is
 //!   bounded: 3ⁿ solutions of at most n equations, n being the number of coordinates at rest.
 //! * **Infinitely many impacts in finite time.** When a rebound would be slower than 1e-12 of the fastest impact on the
 //!   contact, the coordinate comes to rest instead ([`Record::settled`] counts this). A mass that bounces with
@@ -68,11 +69,13 @@
 mod equations;
 mod guards;
 mod hybrid;
+mod joint;
 mod resolve;
 mod small;
 
-pub use equations::{Contacts, Forced, JointInputs, Kept};
+pub use equations::{Contacts, Forced, Kept};
 pub use hybrid::{Hybrid, Record};
+pub use joint::JointInputs;
 
 use crate::Real;
 

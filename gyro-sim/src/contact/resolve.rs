@@ -7,6 +7,8 @@ use crate::Real;
 
 /// Inequalities may be violated by this part of what stands in them: they are computed from roots that are rounded.
 const ROUNDING: f64 = 1e-10;
+/// More than this part means that there is no solution.
+const UNMET: f64 = 1e-6;
 
 /// A stop that is hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,17 +25,15 @@ pub(super) fn impulses<T: Real, const N: usize>(
     hits: &[Option<Hit<T>>; N],
 ) -> ([T; N], [T; N]) {
     let (mut hits, zero) = (*hits, T::constant(0.0));
-    let outcome = by_newton(compliance, rates, &hits);
-    if work(&outcome, rates) <= zero {
+    let (is_met, outcome) = by_newton(compliance, rates, &hits);
+    if is_met && work(&outcome, rates) <= zero {
         return outcome;
     }
-    let coefficients = hits.iter().zip(rates).filter(|(_, rate)| **rate != zero);
-    let least = coefficients.filter_map(|(hit, _)| hit.map(|hit| hit.restitution));
-    let least = least.fold(T::constant(1.0), |least, e| if e < least { e } else { least });
+    // The impulses without rebound are a projection of the rates, which only takes energy.
     for hit in hits.iter_mut().flatten() {
-        hit.restitution = least;
+        hit.restitution = zero;
     }
-    by_newton(compliance, rates, &hits)
+    by_newton(compliance, rates, &hits).1
 }
 
 /// What impulses add to the kinetic energy.
@@ -42,11 +42,12 @@ pub(super) fn work<T: Real, const N: usize>((impulses, after): &([T; N], [T; N])
     (0..N).fold(T::constant(0.0), |sum, k| sum + half * impulses[k] * (after[k] + before[k]))
 }
 
+/// The impulses that violate the inequalities least, and whether that is rounding.
 fn by_newton<T: Real, const N: usize>(
     compliance: &[[T; N]; N],
     rates: &[T; N],
     hits: &[Option<Hit<T>>; N],
-) -> ([T; N], [T; N]) {
+) -> (bool, ([T; N], [T; N])) {
     let zero = T::constant(0.0);
     let target = |k: usize| hits[k].map_or(zero, |hit| -hit.restitution * rates[k]);
     let right = core::array::from_fn(|k| target(k) - rates[k]);
@@ -83,7 +84,8 @@ fn by_newton<T: Real, const N: usize>(
             break;
         }
     }
-    best.map_or(([zero; N], *rates), |(_, impulses, after)| (impulses, after))
+    let (worst, impulses, after) = best.unwrap_or((zero, [zero; N], *rates));
+    (worst <= T::constant(UNMET) * scale, (impulses, after))
 }
 
 /// What a coordinate at rest may do, in the order in which it is tried.

@@ -5,8 +5,8 @@ use crate::Real;
 /// A pivot of less than this part of its diagonal depends on the others.
 const DEPENDENT: f64 = 1e-10;
 
-/// Solves `W x = b` for the unknowns that are chosen, W being symmetric and positive semidefinite; the others, and those
-/// that depend on chosen ones, are zero. By elimination with the largest pivots on the diagonal.
+/// Solves `W x = b` for the unknowns that are chosen, W being symmetric and positive semidefinite; the others, and
+/// those that depend on chosen ones, are zero. By elimination with the largest pivots on the diagonal.
 pub(super) fn solve<T: Real, const N: usize>(
     matrix: &[[T; N]; N],
     right: &[T; N],

@@ -215,11 +215,12 @@ fn impulses_are_complementary_and_take_energy() {
         // Rates that the freedoms allow.
         let freedoms: [f64; 4] = core::array::from_fn(|_| random.between(-1.0, 1.0));
         let rates = core::array::from_fn(|i| (0..rank).map(|r| g[r][i] * freedoms[r]).sum::<f64>());
-        let same = random.between(0.0, 1.0);
         let hits: [Option<Hit<f64>>; 4] = core::array::from_fn(|k| {
-            let restitution = if case % 2 == 0 { same } else { random.between(0.0, 1.0) };
-            // What is hit is approached.
-            let outward = if rates[k] > 0.0 { -1.0 } else { 1.0 };
+            // What is hit is approached; of odd cases some are touched only, and left.
+            let towards = if rates[k] > 0.0 { -1.0 } else { 1.0 };
+            let is_left = case % 2 == 1 && random.between(0.0, 1.0) < 0.3;
+            let restitution = if is_left { 0.0 } else { random.between(0.0, 1.0) };
+            let outward = if is_left { -towards } else { towards };
             (random.between(0.0, 1.0) < 0.7).then_some(Hit { outward, restitution })
         });
         let outcome = impulses(&compliance, &rates, &hits);

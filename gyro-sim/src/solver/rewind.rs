@@ -34,6 +34,14 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         (mark.since_correction, mark.statistics) = (self.since_correction, self.statistics);
     }
 
+    /// Takes an element of the state from the mark, where a correction has moved it.
+    pub(crate) fn pin(&mut self, mark: &Mark<S, T>, index: usize) {
+        let kept = mark.y.as_ref()[index];
+        let now = &mut self.y.as_mut()[index];
+        self.is_untouched &= *now == kept;
+        *now = kept;
+    }
+
     /// The length of the last step, s.
     pub(crate) fn last_step(&self) -> T {
         self.before.2
