@@ -1,7 +1,8 @@
 //! Random studies: in whatever parts, blocks and lanes they run, and whenever they are killed, the bytes are the same.
 //!
 //! They compile two programs, so they are run by themselves: `cargo test --package gyro-cli --test sweep_random --
-//! --ignored`. `GYRO_STUDIES=100` runs more of them.
+//! --ignored`. `GYRO_STUDIES=100` runs more of them. Results name the commit, and whether files have changed since: none
+//! may change while they run.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use std::fmt::Write as _;
@@ -83,7 +84,7 @@ fn study(random: &mut Random) -> String {
         "parameter = [\"offset_x\", \"offset_y\"]\nwithin = 2e-5",
         // Some of these are of no rotor.
         "parameter = \"product_xy\"\nnormal = [0, 1e-5]\ntruncated = [-3e-5, 3e-5]",
-        "parameter = [\"product_yz\", \"product_zx\"]\ncovariance = [[1e-12, 2e-13], [2e-13, 1e-12]]",
+        "parameter = [\"imbalance_y\", \"imbalance_z\"]\ncovariance = [[1e-12, 2e-13], [2e-13, 1e-12]]",
         "start = \"beta\"\nuniform = [-0.1, 0.1]",
         "start = \"phi rate\"\nlog_uniform = [50, 150]",
     ];

@@ -4,11 +4,11 @@ use crate::Keep;
 
 /// A number with its derivatives.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Sloped {
+pub(crate) struct Sloped {
     /// The number.
-    pub value: f64,
+    pub(crate) value: f64,
     /// Its derivatives, one for each direction.
-    pub slopes: Vec<f64>,
+    pub(crate) slopes: Vec<f64>,
 }
 
 /// Follows a scenario from sample to sample, as [`Keeper`](crate::Keeper) does, and differentiates what that keeps: a
