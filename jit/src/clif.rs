@@ -84,7 +84,12 @@ pub(crate) struct Writer<'w, 'f> {
     pub(crate) strides: Vec<((Array, usize), Value)>,
     /// Where arguments stand that are taken by their address.
     pub(crate) slot: Option<StackSlot>,
+    /// What was loaded last outside of loops: array and place, and by which operation.
+    pub(crate) loaded: Vec<((Array, usize), Value, usize)>,
 }
+
+/// How many operations long a number stays in its register: it is loaded again where it is used later.
+const KEPT: usize = 24;
 
 /// What is known while a function is written.
 struct Known {
@@ -106,10 +111,13 @@ struct Part {
 struct Line<'t> {
     tape: &'t Tape<Variable, f64>,
     is_taken: Vec<bool>,
+    /// Products with a constant that are of use to nothing but their signs, which go to the constant.
+    is_scaled: Vec<bool>,
 }
 
 impl<'t> Line<'t> {
-    fn new<'g>(tape: &'t Tape<Variable, f64>, given: impl Iterator<Item = &'g Place>) -> Self {
+    fn new<'g>(tape: &'t Tape<Variable, f64>, given: impl Iterator<Item = &'g Place> + Clone) -> Self {
+        let is_scaled = scaled(tape, given.clone());
         let is_sign = |operation: &Operation<_, _>| !IS_FUSED && matches!(operation, Operation::Negate(_));
         let mut is_taken: Vec<bool> = tape.operations.iter().map(is_sign).collect();
         let mut stays = |place: Place| is_taken[place.0 as usize] = false;
@@ -125,7 +133,7 @@ impl<'t> Line<'t> {
                 ref other => other.operands().for_each(&mut stays),
             }
         }
-        Self { tape, is_taken }
+        Self { tape, is_taken, is_scaled }
     }
 }
 
@@ -183,6 +191,7 @@ impl Writer<'_, '_> {
 
     /// A block with the condition, one with the body, and one for what follows.
     fn repeat(&mut self, known: &Known, each: &Loop<Variable, f64>, table: usize) {
+        self.loaded.clear();
         let [condition, body, after] = [(); 3].map(|()| self.builder.create_block());
         let number = self.builder.append_block_param(condition, self.pointer);
         let (first, end, step) = match each.direction {
@@ -229,6 +238,11 @@ impl Writer<'_, '_> {
             let value = match line.tape.operations[place] {
                 // Nobody reads it.
                 Operation::Negate(of) if line.is_taken[place] => values[of.0 as usize],
+                // It has the sign already.
+                Operation::Negate(of) if line.is_scaled[of.0 as usize] => values[of.0 as usize],
+                Operation::Multiply(a, b) if line.is_scaled[place] => {
+                    self.opposite(line.tape, (a, b), values)
+                }
                 ref operation => self.operation(known, (line.tape, operation), part, values),
             };
             values.push(value);
@@ -245,9 +259,9 @@ impl Writer<'_, '_> {
         let at = |place: &Place| values[place.0 as usize];
         match operation {
             Operation::Constant(value) => self.constant(*value),
-            Operation::Variable(variable) => self.variable(known, *variable, part),
+            Operation::Variable(variable) => self.variable(known, *variable, part, values.len()),
             Operation::Add(a, b) => {
-                let [a, b] = second_constant(tape, [*a, *b]).map(|place| at(&place));
+                let [a, b] = second(tape, [*a, *b]).map(|place| at(&place));
                 self.builder.ins().fadd(a, b)
             }
             Operation::Subtract(a, b) => self.builder.ins().fsub(at(a), at(b)),
@@ -264,9 +278,19 @@ impl Writer<'_, '_> {
         }
     }
 
+    /// The negative of a product with a constant.
+    fn opposite(&mut self, tape: &Tape<Variable, f64>, (a, b): (Place, Place), values: &[Value]) -> Value {
+        let [a, b] = second(tape, [a, b]);
+        let Operation::Constant(value) = tape.operations[b.0 as usize] else {
+            unreachable!("it is a constant")
+        };
+        let constant = self.constant(-value);
+        self.builder.ins().fmul(values[a.0 as usize], constant)
+    }
+
     /// A product.
     fn product(&mut self, tape: &Tape<Variable, f64>, (a, b): (Place, Place), values: &[Value]) -> Value {
-        let [a, b] = second_constant(tape, [a, b]).map(|place| values[place.0 as usize]);
+        let [a, b] = second(tape, [a, b]).map(|place| values[place.0 as usize]);
         self.builder.ins().fmul(a, b)
     }
 
@@ -300,6 +324,8 @@ impl Writer<'_, '_> {
     }
 
     fn call(&mut self, function: usize, arguments: &[Value]) -> Value {
+        // No register outlives a call.
+        self.loaded.clear();
         if self.width == Width::Pair {
             return self.call_by_address(function, arguments);
         }
@@ -321,7 +347,7 @@ impl Writer<'_, '_> {
         self.builder.ins().stack_load(self.pointer, self.width.ty(), slot, 0)
     }
 
-    fn variable(&mut self, known: &Known, variable: Variable, part: Option<Part>) -> Value {
+    fn variable(&mut self, known: &Known, variable: Variable, part: Option<Part>, at: usize) -> Value {
         let (array, place, stride) = match (variable, part) {
             (Variable::Time, _) => return known.time,
             (Variable::Fixed(place), _) => return known.fixed[place],
@@ -335,7 +361,10 @@ impl Writer<'_, '_> {
             (other, _) => {
                 let (array, place) = self.layout.place(self.shape, other).expect("it is outside of loops");
                 self.reaches(array, place + 1);
-                return self.load(known.array(array), place);
+                return match part {
+                    Some(_) => self.load(known.array(array), place),
+                    None => self.load_once(known, (array, place), at),
+                };
             }
         };
         let Part { number, count, .. } = part.expect("it is read in a loop");
@@ -354,6 +383,17 @@ impl Writer<'_, '_> {
         let address = self.builder.ins().iadd(known.array(array), offset);
         self.strides.push(((array, stride), address));
         address
+    }
+
+    /// A number outside of loops, if it was not loaded a few operations ago.
+    fn load_once(&mut self, known: &Known, what: (Array, usize), at: usize) -> Value {
+        self.loaded.retain(|(_, _, by)| at - by <= KEPT);
+        if let Some((_, value, _)) = self.loaded.iter().find(|(other, ..)| *other == what) {
+            return *value;
+        }
+        let value = self.load(known.array(what.0), what.1);
+        self.loaded.push((what, value, at));
+        value
     }
 
     fn load(&mut self, base: Value, place: usize) -> Value {
@@ -379,11 +419,42 @@ impl Known {
     }
 }
 
-/// Operands in an order in which a constant comes second: processors read second operands from memory, which is where
-/// constants are.
-fn second_constant(tape: &Tape<Variable, f64>, [a, b]: [Place; 2]) -> [Place; 2] {
-    let is_constant = matches!(tape.operations[a.0 as usize], Operation::Constant(_));
-    if is_constant { [b, a] } else { [a, b] }
+/// Operands in an order in which a constant comes second, or else what was loaded last: processors read second operands
+/// from memory, which is where both are.
+fn second(tape: &Tape<Variable, f64>, [a, b]: [Place; 2]) -> [Place; 2] {
+    let rank = |place: Place| match tape.operations[place.0 as usize] {
+        Operation::Constant(_) => (2, 0),
+        Operation::Variable(_) => (1, place.0),
+        _ => (0, 0),
+    };
+    if rank(a) > rank(b) { [b, a] } else { [a, b] }
+}
+
+/// Which products with a constant are of use to nothing but signs.
+fn scaled<'g>(tape: &Tape<Variable, f64>, given: impl Iterator<Item = &'g Place>) -> Vec<bool> {
+    let at = |place: Place| &tape.operations[place.0 as usize];
+    let is_constant = |place: Place| matches!(at(place), Operation::Constant(_));
+    let is_scaled = |operation: &Operation<_, _>| match *operation {
+        Operation::Multiply(a, b) => is_constant(a) || is_constant(b),
+        _ => false,
+    };
+    let (mut is_scaled, mut has_sign): (Vec<bool>, _) =
+        (tape.operations.iter().map(is_scaled).collect(), vec![false; tape.operations.len()]);
+    given.for_each(|place| is_scaled[place.0 as usize] = false);
+    for operation in &tape.operations {
+        match *operation {
+            Operation::Negate(of) => has_sign[of.0 as usize] = true,
+            Operation::Fused(a, b, c) => {
+                // Differences are made of what signs stand before.
+                let taken = [a, c].map(|place| negated(tape, place));
+                [Some(a), Some(b), Some(c)].into_iter().chain(taken).flatten().for_each(|place| {
+                    is_scaled[place.0 as usize] = false;
+                });
+            }
+            ref other => other.operands().for_each(|place| is_scaled[place.0 as usize] = false),
+        }
+    }
+    is_scaled.iter().zip(has_sign).map(|(&is_scaled, has_sign)| is_scaled && has_sign).collect()
 }
 
 /// What a number is the negative of, if it is written so.
