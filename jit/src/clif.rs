@@ -111,13 +111,17 @@ struct Part {
 struct Line<'t> {
     tape: &'t Tape<Variable, f64>,
     is_taken: Vec<bool>,
-    /// Products with a constant that are of use to nothing but their signs, which go to the constant.
-    is_scaled: Vec<bool>,
+    /// Of products that are of use to nothing but their signs the constant factors that the signs go to.
+    scaled_by: Vec<Option<Place>>,
+    /// These factors.
+    is_opposite: Vec<bool>,
 }
 
 impl<'t> Line<'t> {
     fn new<'g>(tape: &'t Tape<Variable, f64>, given: impl Iterator<Item = &'g Place> + Clone) -> Self {
-        let is_scaled = scaled(tape, given.clone());
+        let scaled_by = scaled(tape, given.clone());
+        let mut is_opposite = vec![false; tape.operations.len()];
+        scaled_by.iter().flatten().for_each(|factor| is_opposite[factor.0 as usize] = true);
         let is_sign = |operation: &Operation<_, _>| !IS_FUSED && matches!(operation, Operation::Negate(_));
         let mut is_taken: Vec<bool> = tape.operations.iter().map(is_sign).collect();
         let mut stays = |place: Place| is_taken[place.0 as usize] = false;
@@ -133,7 +137,7 @@ impl<'t> Line<'t> {
                 ref other => other.operands().for_each(&mut stays),
             }
         }
-        Self { tape, is_taken, is_scaled }
+        Self { tape, is_taken, scaled_by, is_opposite }
     }
 }
 
@@ -239,10 +243,8 @@ impl Writer<'_, '_> {
                 // Nobody reads it.
                 Operation::Negate(of) if line.is_taken[place] => values[of.0 as usize],
                 // It has the sign already.
-                Operation::Negate(of) if line.is_scaled[of.0 as usize] => values[of.0 as usize],
-                Operation::Multiply(a, b) if line.is_scaled[place] => {
-                    self.opposite(line.tape, (a, b), values)
-                }
+                Operation::Negate(of) if line.scaled_by[of.0 as usize].is_some() => values[of.0 as usize],
+                Operation::Constant(value) if line.is_opposite[place] => self.constant(-value),
                 ref operation => self.operation(known, (line.tape, operation), part, values),
             };
             values.push(value);
@@ -276,16 +278,6 @@ impl Writer<'_, '_> {
             Operation::Tanh(a) => self.call(2, &[at(a)]),
             Operation::Atan2(y, x) => self.call(3, &[at(y), at(x)]),
         }
-    }
-
-    /// The negative of a product with a constant.
-    fn opposite(&mut self, tape: &Tape<Variable, f64>, (a, b): (Place, Place), values: &[Value]) -> Value {
-        let [a, b] = second(tape, [a, b]);
-        let Operation::Constant(value) = tape.operations[b.0 as usize] else {
-            unreachable!("it is a constant")
-        };
-        let constant = self.constant(-value);
-        self.builder.ins().fmul(values[a.0 as usize], constant)
     }
 
     /// A product.
@@ -430,31 +422,31 @@ fn second(tape: &Tape<Variable, f64>, [a, b]: [Place; 2]) -> [Place; 2] {
     if rank(a) > rank(b) { [b, a] } else { [a, b] }
 }
 
-/// Which products with a constant are of use to nothing but signs.
-fn scaled<'g>(tape: &Tape<Variable, f64>, given: impl Iterator<Item = &'g Place>) -> Vec<bool> {
-    let at = |place: Place| &tape.operations[place.0 as usize];
-    let is_constant = |place: Place| matches!(at(place), Operation::Constant(_));
-    let is_scaled = |operation: &Operation<_, _>| match *operation {
-        Operation::Multiply(a, b) => is_constant(a) || is_constant(b),
-        _ => false,
-    };
-    let (mut is_scaled, mut has_sign): (Vec<bool>, _) =
-        (tape.operations.iter().map(is_scaled).collect(), vec![false; tape.operations.len()]);
-    given.for_each(|place| is_scaled[place.0 as usize] = false);
+/// Of products that are of use to nothing but their signs the constant factor, if it is of no other use.
+fn scaled<'g>(tape: &Tape<Variable, f64>, given: impl Iterator<Item = &'g Place>) -> Vec<Option<Place>> {
+    let (mut n_uses, mut n_signs) = (vec![0; tape.operations.len()], vec![0; tape.operations.len()]);
+    given.for_each(|place| n_uses[place.0 as usize] += 1);
     for operation in &tape.operations {
+        operation.operands().for_each(|place| n_uses[place.0 as usize] += 1);
         match *operation {
-            Operation::Negate(of) => has_sign[of.0 as usize] = true,
-            Operation::Fused(a, b, c) => {
-                // Differences are made of what signs stand before.
-                let taken = [a, c].map(|place| negated(tape, place));
-                [Some(a), Some(b), Some(c)].into_iter().chain(taken).flatten().for_each(|place| {
-                    is_scaled[place.0 as usize] = false;
-                });
+            Operation::Negate(of) => n_signs[of.0 as usize] += 1,
+            // Differences are made of what signs stand before.
+            Operation::Fused(a, _, c) => {
+                let taken = [a, c].into_iter().filter_map(|place| negated(tape, place));
+                taken.for_each(|place| n_uses[place.0 as usize] += 1);
             }
-            ref other => other.operands().for_each(|place| is_scaled[place.0 as usize] = false),
+            _ => (),
         }
     }
-    is_scaled.iter().zip(has_sign).map(|(&is_scaled, has_sign)| is_scaled && has_sign).collect()
+    let factor = |place: Place| {
+        let is_constant = matches!(tape.operations[place.0 as usize], Operation::Constant(_));
+        (is_constant && n_uses[place.0 as usize] == 1).then_some(place)
+    };
+    let of = |(at, operation): (usize, &Operation<Variable, f64>)| match *operation {
+        Operation::Multiply(a, b) if n_signs[at] == 1 && n_uses[at] == 1 => factor(a).or_else(|| factor(b)),
+        _ => None,
+    };
+    tape.operations.iter().enumerate().map(of).collect()
 }
 
 /// What a number is the negative of, if it is written so.
