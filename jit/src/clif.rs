@@ -84,7 +84,12 @@ pub(crate) struct Writer<'w, 'f> {
     pub(crate) strides: Vec<((Array, usize), Value)>,
     /// Where arguments stand that are taken by their address.
     pub(crate) slot: Option<StackSlot>,
+    /// What was loaded last outside of loops: array and place, and by which operation.
+    pub(crate) loaded: Vec<((Array, usize), Value, usize)>,
 }
+
+/// How many operations long a number stays in its register: it is loaded again where it is used later.
+const KEPT: usize = 24;
 
 /// What is known while a function is written.
 struct Known {
@@ -106,10 +111,17 @@ struct Part {
 struct Line<'t> {
     tape: &'t Tape<Variable, f64>,
     is_taken: Vec<bool>,
+    /// Of products that are of use to nothing but their signs the constant factors that the signs go to.
+    scaled_by: Vec<Option<Place>>,
+    /// These factors.
+    is_opposite: Vec<bool>,
 }
 
 impl<'t> Line<'t> {
-    fn new<'g>(tape: &'t Tape<Variable, f64>, given: impl Iterator<Item = &'g Place>) -> Self {
+    fn new<'g>(tape: &'t Tape<Variable, f64>, given: impl Iterator<Item = &'g Place> + Clone) -> Self {
+        let scaled_by = scaled(tape, given.clone());
+        let mut is_opposite = vec![false; tape.operations.len()];
+        scaled_by.iter().flatten().for_each(|factor| is_opposite[factor.0 as usize] = true);
         let is_sign = |operation: &Operation<_, _>| !IS_FUSED && matches!(operation, Operation::Negate(_));
         let mut is_taken: Vec<bool> = tape.operations.iter().map(is_sign).collect();
         let mut stays = |place: Place| is_taken[place.0 as usize] = false;
@@ -125,7 +137,7 @@ impl<'t> Line<'t> {
                 ref other => other.operands().for_each(&mut stays),
             }
         }
-        Self { tape, is_taken }
+        Self { tape, is_taken, scaled_by, is_opposite }
     }
 }
 
@@ -183,6 +195,7 @@ impl Writer<'_, '_> {
 
     /// A block with the condition, one with the body, and one for what follows.
     fn repeat(&mut self, known: &Known, each: &Loop<Variable, f64>, table: usize) {
+        self.loaded.clear();
         let [condition, body, after] = [(); 3].map(|()| self.builder.create_block());
         let number = self.builder.append_block_param(condition, self.pointer);
         let (first, end, step) = match each.direction {
@@ -229,6 +242,9 @@ impl Writer<'_, '_> {
             let value = match line.tape.operations[place] {
                 // Nobody reads it.
                 Operation::Negate(of) if line.is_taken[place] => values[of.0 as usize],
+                // It has the sign already.
+                Operation::Negate(of) if line.scaled_by[of.0 as usize].is_some() => values[of.0 as usize],
+                Operation::Constant(value) if line.is_opposite[place] => self.constant(-value),
                 ref operation => self.operation(known, (line.tape, operation), part, values),
             };
             values.push(value);
@@ -245,9 +261,9 @@ impl Writer<'_, '_> {
         let at = |place: &Place| values[place.0 as usize];
         match operation {
             Operation::Constant(value) => self.constant(*value),
-            Operation::Variable(variable) => self.variable(known, *variable, part),
+            Operation::Variable(variable) => self.variable(known, *variable, part, values.len()),
             Operation::Add(a, b) => {
-                let [a, b] = second_constant(tape, [*a, *b]).map(|place| at(&place));
+                let [a, b] = second(tape, [*a, *b]).map(|place| at(&place));
                 self.builder.ins().fadd(a, b)
             }
             Operation::Subtract(a, b) => self.builder.ins().fsub(at(a), at(b)),
@@ -266,7 +282,7 @@ impl Writer<'_, '_> {
 
     /// A product.
     fn product(&mut self, tape: &Tape<Variable, f64>, (a, b): (Place, Place), values: &[Value]) -> Value {
-        let [a, b] = second_constant(tape, [a, b]).map(|place| values[place.0 as usize]);
+        let [a, b] = second(tape, [a, b]).map(|place| values[place.0 as usize]);
         self.builder.ins().fmul(a, b)
     }
 
@@ -300,6 +316,8 @@ impl Writer<'_, '_> {
     }
 
     fn call(&mut self, function: usize, arguments: &[Value]) -> Value {
+        // No register outlives a call.
+        self.loaded.clear();
         if self.width == Width::Pair {
             return self.call_by_address(function, arguments);
         }
@@ -321,7 +339,7 @@ impl Writer<'_, '_> {
         self.builder.ins().stack_load(self.pointer, self.width.ty(), slot, 0)
     }
 
-    fn variable(&mut self, known: &Known, variable: Variable, part: Option<Part>) -> Value {
+    fn variable(&mut self, known: &Known, variable: Variable, part: Option<Part>, at: usize) -> Value {
         let (array, place, stride) = match (variable, part) {
             (Variable::Time, _) => return known.time,
             (Variable::Fixed(place), _) => return known.fixed[place],
@@ -335,7 +353,10 @@ impl Writer<'_, '_> {
             (other, _) => {
                 let (array, place) = self.layout.place(self.shape, other).expect("it is outside of loops");
                 self.reaches(array, place + 1);
-                return self.load(known.array(array), place);
+                return match part {
+                    Some(_) => self.load(known.array(array), place),
+                    None => self.load_once(known, (array, place), at),
+                };
             }
         };
         let Part { number, count, .. } = part.expect("it is read in a loop");
@@ -354,6 +375,17 @@ impl Writer<'_, '_> {
         let address = self.builder.ins().iadd(known.array(array), offset);
         self.strides.push(((array, stride), address));
         address
+    }
+
+    /// A number outside of loops, if it was not loaded a few operations ago.
+    fn load_once(&mut self, known: &Known, what: (Array, usize), at: usize) -> Value {
+        self.loaded.retain(|(_, _, by)| at - by <= KEPT);
+        if let Some((_, value, _)) = self.loaded.iter().find(|(other, ..)| *other == what) {
+            return *value;
+        }
+        let value = self.load(known.array(what.0), what.1);
+        self.loaded.push((what, value, at));
+        value
     }
 
     fn load(&mut self, base: Value, place: usize) -> Value {
@@ -379,11 +411,42 @@ impl Known {
     }
 }
 
-/// Operands in an order in which a constant comes second: processors read second operands from memory, which is where
-/// constants are.
-fn second_constant(tape: &Tape<Variable, f64>, [a, b]: [Place; 2]) -> [Place; 2] {
-    let is_constant = matches!(tape.operations[a.0 as usize], Operation::Constant(_));
-    if is_constant { [b, a] } else { [a, b] }
+/// Operands in an order in which a constant comes second, or else what was loaded last: processors read second operands
+/// from memory, which is where both are.
+fn second(tape: &Tape<Variable, f64>, [a, b]: [Place; 2]) -> [Place; 2] {
+    let rank = |place: Place| match tape.operations[place.0 as usize] {
+        Operation::Constant(_) => (2, 0),
+        Operation::Variable(_) => (1, place.0),
+        _ => (0, 0),
+    };
+    if rank(a) > rank(b) { [b, a] } else { [a, b] }
+}
+
+/// Of products that are of use to nothing but their signs the constant factor, if it is of no other use.
+fn scaled<'g>(tape: &Tape<Variable, f64>, given: impl Iterator<Item = &'g Place>) -> Vec<Option<Place>> {
+    let (mut n_uses, mut n_signs) = (vec![0; tape.operations.len()], vec![0; tape.operations.len()]);
+    given.for_each(|place| n_uses[place.0 as usize] += 1);
+    for operation in &tape.operations {
+        operation.operands().for_each(|place| n_uses[place.0 as usize] += 1);
+        match *operation {
+            Operation::Negate(of) => n_signs[of.0 as usize] += 1,
+            // Differences are made of what signs stand before.
+            Operation::Fused(a, _, c) => {
+                let taken = [a, c].into_iter().filter_map(|place| negated(tape, place));
+                taken.for_each(|place| n_uses[place.0 as usize] += 1);
+            }
+            _ => (),
+        }
+    }
+    let factor = |place: Place| {
+        let is_constant = matches!(tape.operations[place.0 as usize], Operation::Constant(_));
+        (is_constant && n_uses[place.0 as usize] == 1).then_some(place)
+    };
+    let of = |(at, operation): (usize, &Operation<Variable, f64>)| match *operation {
+        Operation::Multiply(a, b) if n_signs[at] == 1 && n_uses[at] == 1 => factor(a).or_else(|| factor(b)),
+        _ => None,
+    };
+    tape.operations.iter().enumerate().map(of).collect()
 }
 
 /// What a number is the negative of, if it is written so.

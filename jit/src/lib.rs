@@ -51,7 +51,7 @@ pub use engine::{Arguments, Engine};
 pub use interpret::Interpreter;
 pub use machine_code::{Input, MachineCode, Native, NotCompiled};
 pub use mechanism::InProcess;
-pub use run::{Runs, simulate};
+pub use run::{Runs, answer, simulate};
 
 use gyro_codegen::{Effort, Functions, Scheduled};
 use gyro_model::Model;

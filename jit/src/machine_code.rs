@@ -27,19 +27,21 @@ pub trait Native: Scalar + Send + Sync + 'static {
     fn functions() -> [*const u8; 4];
 }
 
-extern "C" fn sin<T: Scalar>(x: T) -> T {
+// They do not unwind. Being allowed to, they are one jump to the function itself.
+
+extern "C-unwind" fn sin<T: Scalar>(x: T) -> T {
     x.sin()
 }
 
-extern "C" fn cos<T: Scalar>(x: T) -> T {
+extern "C-unwind" fn cos<T: Scalar>(x: T) -> T {
     x.cos()
 }
 
-extern "C" fn tanh<T: Scalar>(x: T) -> T {
+extern "C-unwind" fn tanh<T: Scalar>(x: T) -> T {
     x.tanh()
 }
 
-extern "C" fn atan2<T: Scalar>(y: T, x: T) -> T {
+extern "C-unwind" fn atan2<T: Scalar>(y: T, x: T) -> T {
     y.atan2(x)
 }
 
@@ -127,6 +129,37 @@ struct Compiled<T: Native> {
     reach: [usize; 6],
     n_work: usize,
     reads_curves: bool,
+    /// Whether it needs nothing but its arguments: neither work space nor curves.
+    is_plain: bool,
+}
+
+impl<T: Native> Compiled<T> {
+    /// Calls it after comparing the lengths of all arrays with its reach; `tables` and `work` are those of a kernel that is
+    /// not plain.
+    #[inline(always)]
+    fn call(&self, kernel: Kernel, arguments: Arguments<'_, T>, beside: Option<(&[T], &mut [T])>) {
+        let Arguments { t, state, given, own, out } = arguments;
+        let [of_state, of_given, of_own, of_tables, of_work, of_out] = self.reach;
+        let is_short = (state.len() < of_state)
+            | (given.len() < of_given)
+            | (own.len() < of_own)
+            | (out.len() < of_out)
+            | match &beside {
+                Some((tables, work)) => (tables.len() < of_tables) | (work.len() < of_work),
+                None => !self.is_plain,
+            };
+        if is_short {
+            short(kernel, &self.reach);
+        }
+        let [state, given, own] = [state, given, own].map(<[T]>::as_ptr);
+        let (tables, work) = beside
+            .map_or((state, std::ptr::null_mut()), |(tables, work)| (tables.as_ptr(), work.as_mut_ptr()));
+        // SAFETY: the function reads and writes no more of each array than `reach`, which was counted as its loads and
+        // stores were written and is within the arrays' lengths (zero for the tables and the work space of plain ones); it
+        // writes to the last two alone, which are borrowed mutably; it keeps no address. The code is alive as `Code`, which
+        // owns both, is.
+        unsafe { (self.function)(t.time(), state, given, own, tables, work, out.as_mut_ptr()) }
+    }
 }
 
 /// The machine code of all kernels of a mechanism.
@@ -207,7 +240,9 @@ impl<T: Native> MachineCode<T> {
             // only called while `module`, which owns the memory, is alive.
             let function = unsafe { std::mem::transmute::<*const u8, Function<T>>(address) };
             let reads_curves = reads_curves(scheduled, kernel);
-            functions[kernel as usize] = Some(Compiled { function, reach, n_work, reads_curves });
+            let [_, _, _, of_tables, of_work, _] = reach;
+            let is_plain = !reads_curves && of_tables == 0 && of_work == 0;
+            functions[kernel as usize] = Some(Compiled { function, reach, n_work, reads_curves, is_plain });
         }
         let tables = tables.into_iter().map(T::constant).collect();
         let code = Code { functions, tables, module: Mutex::new(Some(module)) };
@@ -216,34 +251,40 @@ impl<T: Native> MachineCode<T> {
 }
 
 impl<T: Native> Engine<T> for MachineCode<T> {
+    #[inline(always)]
     fn compute(&self, scheduled: &Scheduled, kernel: Kernel, arguments: Arguments<'_, T>) {
+        // Taken apart, they stay in registers on the short way.
         let Arguments { t, state, given, own, out } = arguments;
-        let Some(compiled) = &self.code.functions[kernel as usize] else { return };
+        match &self.code.functions[kernel as usize] {
+            Some(compiled) if compiled.is_plain => {
+                compiled.call(kernel, Arguments { t, state, given, own, out }, None);
+            }
+            Some(compiled) => {
+                self.compute_with_work(compiled, scheduled, kernel, Arguments { t, state, given, own, out });
+            }
+            None => (),
+        }
+    }
+}
+
+impl<T: Native> MachineCode<T> {
+    /// Computes a kernel that reads curves or tables of loops.
+    #[inline(never)]
+    fn compute_with_work(
+        &self,
+        compiled: &Compiled<T>,
+        scheduled: &Scheduled,
+        kernel: Kernel,
+        arguments: Arguments<'_, T>,
+    ) {
         let mut work = self.work.borrow_mut();
         if work.len() < compiled.n_work {
             work.resize(compiled.n_work, T::constant(0.0));
         }
         if compiled.reads_curves {
-            write_curves(scheduled, t, &mut work[..3 * scheduled.curves.len()]);
+            write_curves(scheduled, arguments.t, &mut work[..3 * scheduled.curves.len()]);
         }
-        let tables = &self.code.tables[..];
-        let [of_state, of_given, of_own, of_tables, of_work, of_out] = compiled.reach;
-        let is_short = (state.len() < of_state)
-            | (given.len() < of_given)
-            | (own.len() < of_own)
-            | (tables.len() < of_tables)
-            | (work.len() < of_work)
-            | (out.len() < of_out);
-        if is_short {
-            short(kernel, &compiled.reach);
-        }
-        let [state, given, own, tables] = [state, given, own, tables].map(<[T]>::as_ptr);
-        // SAFETY: the function reads and writes no more of each array than `reach`, which was counted as its loads and
-        // stores were written and is within the arrays' lengths; it writes to the last two alone, which are borrowed
-        // mutably; it keeps no address. The code is alive as `self.code` is.
-        unsafe {
-            (compiled.function)(t.time(), state, given, own, tables, work.as_mut_ptr(), out.as_mut_ptr())
-        }
+        compiled.call(kernel, arguments, Some((&self.code.tables, &mut work)));
     }
 }
 
@@ -328,6 +369,7 @@ impl Compiler {
             reach: [0; 6],
             strides: Vec::new(),
             slot: None,
+            loaded: Vec::new(),
         };
         writer.write(described);
         let reach = writer.reach;

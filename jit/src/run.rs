@@ -7,6 +7,7 @@ use gyro_runner::motion::{
     InClosedForm, InJoints, Kind, Linearise, MotionBuilder, Nothing, Only, Partitioned, Projected,
     Stabilised, Tree, TreeWithJacobian, WithDuals,
 };
+use gyro_runner::protocol::Request;
 use gyro_runner::{
     Approach, Coordinates, Correction, Event, Failure, Integrator, Settings, Start, Summary, run_by,
 };
@@ -40,6 +41,20 @@ pub fn simulate<T: Native + Real>(
 ) -> Result<Summary, Failure> {
     let builder = builder(mechanism, runs, plan.1);
     run_by(mechanism, &*builder, plan, start, tell)
+}
+
+/// Answers a request as a program does that rustc compiles: samples and figures are written to `output`.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn answer<T: Native + Real>(
+    mechanism: &mut Compiled<T>,
+    runs: Runs,
+    request: &Request,
+    output: &mut dyn io::Write,
+) -> Result<Summary, Failure> {
+    let builder = builder(mechanism, runs, &request.approach);
+    gyro_runner::child::answer(mechanism, &*builder, request, output)
 }
 
 /// With what motions are begun.
