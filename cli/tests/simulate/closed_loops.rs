@@ -55,8 +55,9 @@ fn poles_of_closed_loops_are_those_of_exact_motions() {
             plant.start = start;
         }
         for first in 2..6 {
+            let later = &free[first..];
             for element in 0..2 * plant.n() {
-                let terms = polynomial.iter().enumerate().map(|(k, [c, _])| c * free[first + k][element]);
+                let terms = polynomial.iter().zip(later).map(|([c, _], state)| c * state[element]);
                 let size: f64 = terms.clone().map(f64::abs).sum();
                 let sum: f64 = terms.sum();
                 assert!(sum.abs() < 1e-9 * size, "case {case}: {sum:e} of {size:e}: {poles:?}");

@@ -238,7 +238,7 @@ pub(super) fn exact(plant: &Plant, loops: &[Loop], thousandths: u64) -> (DVector
             }
             *at > now
         });
-        for (k, one) in loops.iter().enumerate().filter(|(_, one)| now % period(one) == 0) {
+        for (k, one) in loops.iter().enumerate().filter(|(_, one)| now.is_multiple_of(period(one))) {
             let errors =
                 one.sees.iter().zip(&one.setpoints).map(|(&at, r)| r - rounded(seen[at], one.steps[0]));
             let (all, made, integral) = &mut memory[k];
