@@ -1,8 +1,8 @@
 //! Random studies: in whatever parts, blocks and lanes they run, and whenever they are killed, the bytes are the same.
 //!
 //! They compile two programs, so they are run by themselves: `cargo test --package gyro-cli --test sweep_random --
-//! --ignored`. `GYRO_STUDIES=100` runs more of them. Results name the commit, and whether files have changed since: none
-//! may change while they run.
+//! --ignored`. `GYRO_STUDIES=100` runs more of them. Results name the commit, and whether files have changed since:
+//! none may change while they run.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use std::fmt::Write as _;

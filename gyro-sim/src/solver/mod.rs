@@ -53,6 +53,8 @@ pub struct Solver<D, S, T, A, C> {
     is_prepared: bool,
     /// Whether the state is exactly the end of the method's last attempt.
     is_untouched: bool,
+    /// Whether the system is another one than that of the method's last attempt.
+    has_changed: bool,
     /// Whether time and state are known to be finite.
     is_checked: bool,
     /// For mechanisms with singular poses: the states after the last steps.
@@ -110,6 +112,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
             is_kept: false,
             is_prepared: false,
             is_untouched: false,
+            has_changed: false,
             is_checked: false,
             past: Past::new(t, y),
             raw: y.clone(),
@@ -177,7 +180,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
     /// To be called when the model or the equations have changed, for example by a new value of an input: what was
     /// computed from them is discarded.
     pub fn system_has_changed(&mut self) {
-        self.is_untouched = false;
+        (self.is_untouched, self.has_changed) = (false, true);
         self.resumes = false;
         self.past.forget();
         self.leap = None;
@@ -337,9 +340,11 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         C: Correction<D, M>,
     {
         if self.is_kept {
-            self.resumes = self.method.carry() && self.is_untouched;
+            // Slopes of two systems say nothing of the rates of either.
+            self.resumes = !self.has_changed && self.method.carry() && self.is_untouched;
             self.is_kept = false;
         }
+        self.has_changed = false;
         let system = System { dynamics: &self.dynamics, model: system };
         self.method.attempt(system, self.t, h, &self.y, self.resumes, &mut self.statistics.work);
         self.resumes = true;
