@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
 # Fetches Open MPI, and the libclang that its bindings are made with: Debian's packages, unpacked into a folder of this
-# clone. Nothing is installed and root is not needed. Where both are installed, nothing is fetched.
+# clone. Nothing is installed and root is not needed. Where all of them are installed, nothing is fetched.
 #
 #   eval "$(tests/mpi/setup.sh)"      fetches what is missing; prints what a shell has to know to build and to run
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-PACKAGES=(libopenmpi-dev openmpi-bin libclang-14-dev)
+# What is read or run from this clone's folder. All of it is fetched unless all of it is installed: files of one package
+# refer to those of another by relative paths.
+PACKAGES=(libopenmpi-dev libopenmpi3 openmpi-bin openmpi-common libpmix2)
+PACKAGES+=(libclang-14-dev libclang1-14 libclang-common-14-dev)
 tools=${CARGO_TARGET_DIR:-target}/mpi/tools
 mkdir -p "$tools"/{root,bin,lists/partial,archives/partial}
 tools=$(cd "$tools" && pwd)
@@ -23,12 +26,14 @@ apt() {
 }
 
 if [ ! -e "$tools/complete" ]; then
+    installed=$(dpkg-query --show --showformat='${db:Status-Status}\n' "${PACKAGES[@]}" 2> "$tools/missing" |
+        grep --count --line-regexp installed || true)
+    # Nothing is to be printed, then: shells find all of it.
+    [ "$installed" -lt ${#PACKAGES[@]} ] || exit 0
     apt update
     # What it would take to install them here, but for compilers of Fortran and scripts.
-    packages=$(apt -s install --no-install-recommends "${PACKAGES[@]}" 2>&1 | awk '/^Inst /{print $2}' |
+    packages=$(apt -s install --reinstall --no-install-recommends "${PACKAGES[@]}" 2>&1 | awk '/^Inst /{print $2}' |
         grep -vE '^(auto|m4|libgfortran|gfortran|libjs)' || true)
-    # All of them are installed.
-    [ -n "$packages" ] || exit 0
     (cd "$tools/archives" && apt download $packages)
     for archive in "$tools"/archives/*.deb; do
         dpkg-deb --fsys-tarfile "$archive" | tar -x -C "$root" --exclude='./usr/share/doc/*'
@@ -56,7 +61,9 @@ export OPAL_PREFIX='$root/usr' OPAL_LIBDIR='$mpi/lib' OPAL_PKGLIBDIR='$mpi/lib/o
 exec '$root/usr/bin/orterun' "\$@"
 END
 chmod +x "$tools/bin"/*
-[ -e "$mpi/lib/libmpi.so" ] || fail 'Open MPI has not come with the packages'
+for file in "$mpi/lib/libmpi.so" "$root/usr/bin/orterun" "$libraries/libclang-14.so"; do
+    [ -e "$file" ] || fail "$file has not come with the packages"
+done
 touch "$tools/complete"
 
 headers=$(printf '%s\n' "$root"/usr/lib/clang/*/include | head -n 1)
