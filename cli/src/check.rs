@@ -4,6 +4,7 @@ mod sketch;
 
 use crate::args::CheckArgs;
 use crate::failure::Failure;
+use crate::show::meshes;
 use crate::words::{count, listed, number};
 use crate::write::{self, Known};
 use crate::{columns, controllers, remarks, scene};
@@ -21,6 +22,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<(), Failure> {
     let page = args.model.display().to_string();
     let functions = functions(&model).map_err(|words| Failure::Usage(format!("{page}: {words}")))?;
     let start = model.assemble().map_err(|error| Failure::Usage(format!("{page}: {error}")))?;
+    meshes::read(&model, &args.model)?;
     let mut text = head(&model) + "\n" + &skeleton(&model, &start) + "\n" + &closure(&model, &start);
     text += &coordinates(&model, &functions);
     text += &numbers(&model);

@@ -42,8 +42,8 @@ pub fn input(path: &Path, largest: u64) -> io::Result<String> {
     Ok(text)
 }
 
-/// The text of an ordinary file that is not too large: a pipe or a device might have no end.
-pub fn text(path: &Path, largest: u64) -> io::Result<String> {
+/// The bytes of an ordinary file that is not too large: a pipe or a device might have no end.
+pub fn bytes(path: &Path, largest: u64) -> io::Result<Vec<u8>> {
     // Before it is opened: opening a pipe waits for its other end.
     let found = fs::metadata(path)?;
     if !found.is_file() {
@@ -56,7 +56,12 @@ pub fn text(path: &Path, largest: u64) -> io::Result<String> {
         let words = format!("it is larger than {} MB, the most that is read", largest >> 20);
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, words));
     }
-    String::from_utf8(bytes).map_err(|e| {
+    Ok(bytes)
+}
+
+/// The same of a text.
+pub fn text(path: &Path, largest: u64) -> io::Result<String> {
+    String::from_utf8(bytes(path, largest)?).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
         io::Error::new(
             io::ErrorKind::InvalidData,

@@ -3,6 +3,7 @@
 mod describe;
 mod efforts;
 mod live;
+pub(crate) mod meshes;
 
 use crate::args::{Change, Engine, ShowArgs, SimulateArgs};
 use crate::failure::Failure;
@@ -55,9 +56,13 @@ fn written(args: &ShowArgs) -> Result<Written, Failure> {
     });
     // A place that cannot be used is found out before the run.
     write::check(&path, Known::Mark(gyro_show::MARK))?;
+    let mut looks = vec![meshes::read(&first.model, &args.simulate.model)?];
     let mut scenes = vec![first];
     if !args.compare.is_empty() {
-        scenes.push(Scene::new(&changed(&args.simulate, &args.compare)?)?);
+        let changed = changed(&args.simulate, &args.compare)?;
+        let second = Scene::new(&changed)?;
+        looks.push(meshes::read(&second.model, &changed.model)?);
+        scenes.push(second);
     }
     let names = names(&scenes, &args.compare);
     let live = match (args.live, scenes.first_mut()) {
@@ -73,14 +78,14 @@ fn written(args: &ShowArgs) -> Result<Written, Failure> {
     let mut shown = Vec::new();
     let mut incomplete = None;
     let mut n_samples = 0;
-    for (mut scene, name) in scenes.into_iter().zip(names) {
+    for ((mut scene, name), meshes) in scenes.into_iter().zip(names).zip(looks) {
         if args.reactions {
             add_reactions(&mut scene);
         }
         let (samples, failure) = samples(&mut scene)?;
         incomplete = incomplete.or(failure);
         n_samples += samples.len();
-        shown.push(describe::scene(&scene, name, &samples));
+        shown.push(describe::scene(&scene, name, &samples, meshes));
     }
     let html = gyro_show::page(&shown[0].mechanism.name.clone(), &shown, live.as_ref());
     write::write(&path, &html, Known::Mark(gyro_show::MARK))?;

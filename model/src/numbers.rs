@@ -42,6 +42,7 @@ impl Shape {
             ShapeKind::Box(sides) => numbers.extend(sides),
             ShapeKind::Cylinder(sizes) => numbers.extend(sizes),
             ShapeKind::Sphere(radius) => numbers.push(radius),
+            ShapeKind::Mesh { scale, .. } => numbers.extend(scale),
         }
         numbers.extend(self.position.iter().chain(&self.orientation));
     }

@@ -2,18 +2,18 @@
 
 use crate::Number;
 
-/// A simple solid, fixed to a body.
+/// A solid or a surface, fixed to a body.
 #[derive(Clone, Debug)]
 pub struct Shape {
     /// What it is, and how large.
     pub kind: ShapeKind,
-    /// Its centre in the body's frame, m.
+    /// Its centre in the body's frame, of a mesh the origin of its file, m.
     pub position: [Number; 3],
     /// Euler parameters of its frame in the body's, of any length.
     pub orientation: [Number; 4],
 }
 
-/// The kinds of solid.
+/// The kinds of shape.
 #[derive(Clone, Debug)]
 pub enum ShapeKind {
     /// Edges along x, y and z, m.
@@ -22,4 +22,11 @@ pub enum ShapeKind {
     Cylinder([Number; 2]),
     /// Radius, m.
     Sphere(Number),
+    /// Triangles of a file, which only what draws them reads.
+    Mesh {
+        /// The path as the model file writes it, relative to its folder.
+        file: String,
+        /// By what the coordinates of the file are multiplied to be in m.
+        scale: [Number; 3],
+    },
 }

@@ -148,7 +148,7 @@ struct Body {
     shape: Option<Vec<Shape>>,
 }
 
-/// A box, a cylinder or a sphere.
+/// A box, a cylinder, a sphere or a mesh.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
 #[expect(dead_code, reason = "a description")]
@@ -160,10 +160,22 @@ struct Shape {
     cylinder: Option<[Number; 2]>,
     /// Radius, m.
     sphere: Option<Number>,
+    /// Path of an STL, OBJ or COLLADA file (`.stl`, `.obj`, `.dae`), relative to the model file.
+    mesh: Option<String>,
+    /// By what the mesh's coordinates are multiplied to be in m: one number, or one for each axis.
+    scale: Option<Scale>,
     /// Its centre, m, in the body's frame.
     position: Option<Vector>,
     /// Euler parameters in the body's frame, of any length.
     orientation: Option<Orientation>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[expect(dead_code, reason = "a description")]
+enum Scale {
+    Same(Number),
+    Each(Vector),
 }
 
 #[derive(JsonSchema)]

@@ -28,6 +28,8 @@ pub(crate) enum Rounding {
     Bits(u8),
     /// To a part of the value: 16 steps to an octave, about 2 %.
     Octaves,
+    /// To whole numbers, which stay what they are up to 2³¹.
+    Whole,
 }
 
 const MOST_ORDERS: u8 = 8;
@@ -58,12 +60,14 @@ pub(crate) fn pack(values: &[f64], rounding: Rounding, bytes: &mut Vec<u8>) -> C
         return constant(f64::NAN);
     }
     // Two halves of the range, as the whole may be more than can be written.
-    let base = 0.5 * least + 0.5 * most;
-    let step = match rounding {
-        Rounding::Octaves => 1.0 / OCTAVE,
+    let middle = 0.5 * least + 0.5 * most;
+    let (base, step) = match rounding {
+        Rounding::Octaves => (middle, 1.0 / OCTAVE),
         Rounding::Bits(bits) => {
-            ((0.5 * most - 0.5 * least) / 2_f64.powi(i32::from(bits) - 1)).max(f64::MIN_POSITIVE)
+            let step = (0.5 * most - 0.5 * least) / 2_f64.powi(i32::from(bits) - 1);
+            (middle, step.max(f64::MIN_POSITIVE))
         }
+        Rounding::Whole => (0.0, 1.0),
     };
     #[expect(clippy::cast_possible_truncation, reason = "at most 2³⁰ steps")]
     let rounded = |v: &f64| if v.is_finite() { ((v - base) / step).round() as i32 } else { NONE };
@@ -161,6 +165,12 @@ mod tests {
         let packed = crate::page::deflate(&bytes).len();
         assert!(packed < 10_000, "{packed}");
         assert_eq!(error(&[0.125; 10_000], Rounding::Bits(22)), (0.0, 0));
+    }
+
+    #[test]
+    fn whole_numbers_stay_what_they_are() {
+        let indices: Vec<f64> = (0..3000_u32).map(|k| f64::from(k * 7919 % 100_003)).collect();
+        assert_eq!(error(&indices, Rounding::Whole).0, 0.0);
     }
 
     #[test]

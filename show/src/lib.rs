@@ -21,10 +21,12 @@
 mod channel;
 mod live;
 mod mechanism;
+mod mesh;
 mod page;
 mod run;
 
 pub use live::{Live, Setting, Slope};
 pub use mechanism::{Amount, Body, Effort, Joint, JointEnd, Link, Load, Mechanism, Shape, Support};
+pub use mesh::Mesh;
 pub use page::{MARK, page};
 pub use run::{Column, Reaction, Run, Scale, Scene};

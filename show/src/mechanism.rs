@@ -1,5 +1,6 @@
 //! What a mechanism is made of, as far as a picture of it needs to know.
 
+use crate::Mesh;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -23,6 +24,9 @@ pub struct Mechanism {
     /// What acts along the coordinates of joints.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub efforts: Vec<Effort>,
+    /// Surfaces that shapes are made of.
+    #[serde(skip)]
+    pub meshes: Vec<Mesh>,
 }
 
 /// A rigid body; the origin of its frame is at its mass centre.
@@ -54,14 +58,18 @@ pub enum Support {
     Driven,
 }
 
-/// A simple solid that is part of a body's look.
+/// A solid or a surface that is part of a body's look.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shape {
-    /// `box`, `cylinder` (its axis is z) or `sphere`.
+    /// `box`, `cylinder` (its axis is z), `sphere` or `mesh`.
     pub kind: &'static str,
-    /// Edges of a box; radius and length of a cylinder; radius of a sphere, m.
+    /// Edges of a box; radius and length of a cylinder; radius of a sphere, m. Of a mesh, by what its coordinates are
+    /// multiplied to be in m.
     pub size: Vec<f64>,
-    /// Its centre in the body's frame, m.
+    /// Which of the mechanism's meshes it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<usize>,
+    /// Its centre in the body's frame, of a mesh the origin of its coordinates, m.
     pub position: [f64; 3],
     /// Euler parameters `(e0, e1, e2, e3)` of its frame in the body's.
     pub orientation: [f64; 4],

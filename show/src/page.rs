@@ -1,7 +1,8 @@
 //! The page's text.
 
 use crate::channel::{Channel, Rounding, pack};
-use crate::{Column, Live, Mechanism, Reaction, Run, Scale, Scene};
+use crate::mesh::{self, MeshHead};
+use crate::{Column, Live, Mechanism, Mesh, Reaction, Run, Scale, Scene};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
@@ -34,8 +35,10 @@ const TIME: Rounding = Rounding::Bits(30);
 /// computed in the page if the mechanism comes with it.
 pub fn page(title: &str, scenes: &[Scene], live: Option<&Live>) -> String {
     let mut bytes = Vec::new();
-    let scenes = scenes.iter().map(|scene| head(scene, &mut bytes)).collect();
-    let head = Head { title, scenes, live };
+    let mut meshes = Vec::new();
+    let scenes = scenes.iter().map(|scene| head(scene, &mut meshes, &mut bytes)).collect();
+    let meshes = meshes.into_iter().map(|mesh| mesh::head(mesh, &mut bytes)).collect();
+    let head = Head { title, scenes, meshes, live };
     let json = serde_json::to_string(&head).expect("plain data has no keys but strings");
     SHELL
         .replace("{{mark}}", MARK)
@@ -52,6 +55,8 @@ pub fn page(title: &str, scenes: &[Scene], live: Option<&Live>) -> String {
 struct Head<'a> {
     title: &'a str,
     scenes: Vec<SceneHead<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    meshes: Vec<MeshHead>,
     #[serde(skip_serializing_if = "Option::is_none")]
     live: Option<&'a Live>,
 }
@@ -65,6 +70,9 @@ struct SceneHead<'a> {
     bodies: Vec<BodyHead>,
     columns: Vec<ColumnHead<'a>>,
     reactions: &'a [Reaction],
+    /// Which of the page's meshes those of the mechanism are.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    meshes: Vec<usize>,
 }
 
 /// Channels of a body: seven of its pose and six of its velocities, which a body that stands still lacks.
@@ -83,7 +91,8 @@ struct ColumnHead<'a> {
     channel: Channel,
 }
 
-fn head<'a>(scene: &'a Scene, bytes: &mut Vec<u8>) -> SceneHead<'a> {
+/// `meshes` are those of the whole page.
+fn head<'a>(scene: &'a Scene, meshes: &mut Vec<&'a Mesh>, bytes: &mut Vec<u8>) -> SceneHead<'a> {
     let Scene { name, mechanism, run } = scene;
     let Run { times, poses, velocities, columns, reactions } = run;
     let time = pack(times, TIME, bytes);
@@ -104,7 +113,14 @@ fn head<'a>(scene: &'a Scene, bytes: &mut Vec<u8>) -> SceneHead<'a> {
         ColumnHead { group, title, name, unit, channel }
     };
     let columns = columns.iter().map(column).collect();
-    SceneHead { name, mechanism, n: times.len(), time, bodies, columns, reactions }
+    let place = |mesh: &'a Mesh| {
+        meshes.iter().position(|other| *other == mesh).unwrap_or_else(|| {
+            meshes.push(mesh);
+            meshes.len() - 1
+        })
+    };
+    let meshes = mechanism.meshes.iter().map(place).collect();
+    SceneHead { name, mechanism, n: times.len(), time, bodies, columns, reactions, meshes }
 }
 
 fn part<const N: usize>(rows: &[[f64; N]], k: usize) -> Vec<f64> {

@@ -1,6 +1,7 @@
 //! A model and its samples as the page wants them: plain data.
 
 use super::efforts;
+use super::meshes::Meshes;
 use crate::columns::{self, orientation, scalar};
 use crate::scene::Scene;
 use gyro_model::{
@@ -19,16 +20,16 @@ pub(crate) fn observed(model: &Model) -> Vec<(usize, usize)> {
 }
 
 /// What the page shows of a run.
-pub(crate) fn scene(scene: &Scene, name: String, samples: &[Sample]) -> gyro_show::Scene {
-    gyro_show::Scene { name, mechanism: mechanism(&scene.model), run: run(scene, samples) }
+pub(crate) fn scene(scene: &Scene, name: String, samples: &[Sample], meshes: Meshes) -> gyro_show::Scene {
+    gyro_show::Scene { name, mechanism: mechanism(&scene.model, meshes), run: run(scene, samples) }
 }
 
 /// What the picture is made of.
-pub(super) fn mechanism(model: &Model) -> gyro_show::Mechanism {
+pub(super) fn mechanism(model: &Model, meshes: Meshes) -> gyro_show::Mechanism {
     gyro_show::Mechanism {
         name: model.name.clone(),
         gravity: model.values(&model.gravity),
-        bodies: model.bodies.iter().map(|body| described(model, body)).collect(),
+        bodies: model.bodies.iter().map(|body| described(model, &meshes, body)).collect(),
         joints: model
             .joints
             .iter()
@@ -43,10 +44,11 @@ pub(super) fn mechanism(model: &Model) -> gyro_show::Mechanism {
         springs: springs(model),
         loads: loads(model),
         efforts: efforts::efforts(model),
+        meshes: meshes.meshes,
     }
 }
 
-fn described(model: &Model, body: &Body) -> gyro_show::Body {
+fn described(model: &Model, meshes: &Meshes, body: &Body) -> gyro_show::Body {
     gyro_show::Body {
         name: body.name.clone(),
         support: match body.support {
@@ -56,18 +58,23 @@ fn described(model: &Model, body: &Body) -> gyro_show::Body {
         },
         mass: model.value(&body.mass),
         inertia: model.values(&body.inertia),
-        shapes: body.shapes.iter().map(|shape| drawn(model, shape)).collect(),
+        shapes: body.shapes.iter().map(|shape| drawn(model, meshes, shape)).collect(),
     }
 }
 
-fn drawn(model: &Model, shape: &Shape) -> gyro_show::Shape {
+fn drawn(model: &Model, meshes: &Meshes, shape: &Shape) -> gyro_show::Shape {
+    let mut mesh = None;
     let (kind, size) = match &shape.kind {
         ShapeKind::Box(edges) => ("box", model.values(edges).to_vec()),
         ShapeKind::Cylinder(sizes) => ("cylinder", model.values(sizes).to_vec()),
         ShapeKind::Sphere(radius) => ("sphere", vec![model.value(radius)]),
+        ShapeKind::Mesh { file, scale } => {
+            mesh = meshes.place(file);
+            ("mesh", model.values(scale).to_vec())
+        }
     };
     let orientation = upright(model.values(&shape.orientation));
-    gyro_show::Shape { kind, size, position: model.values(&shape.position), orientation }
+    gyro_show::Shape { kind, size, mesh, position: model.values(&shape.position), orientation }
 }
 
 /// Euler parameters of unit length; of none, the identity.

@@ -1,6 +1,7 @@
 //! The mechanism as WebAssembly, for a page in which it runs.
 
 use super::describe;
+use super::meshes::Meshes;
 use crate::export::wasm::compiled;
 use crate::failure::Failure;
 use crate::progress;
@@ -114,7 +115,7 @@ fn numbers(model: &Model) -> Vec<(String, f64)> {
         }
     }
     let mut found = Vec::new();
-    let drawn = serde_json::to_value(describe::mechanism(model)).unwrap_or_default();
+    let drawn = serde_json::to_value(describe::mechanism(model, Meshes::default())).unwrap_or_default();
     collect("", &drawn, &mut found);
     found
 }

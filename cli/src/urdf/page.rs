@@ -185,7 +185,7 @@ impl Page<'_> {
         for (place, link) in self.merged.places.iter().zip(&self.robot.links) {
             for shape in link.shapes.iter().filter(|_| place.body == index) {
                 let pose = settled(&(place.pose * shape.pose));
-                let _ = writeln!(text, "\n[[body.shape]]\n{}", shape.kind.text());
+                let _ = writeln!(text, "\n[[body.shape]]\n{}", shape.kind.text(self.wishes.folder));
                 let _ = writeln!(text, "position = {}", vector(&pose.translation.vector));
                 let _ = writeln!(text, "orientation = {}", euler_parameters(&pose));
             }

@@ -142,8 +142,16 @@ fn remark_on_shapes(findings: &mut Findings<'_>, root: Node<'_, '_>, links: &[Li
     let kept: usize = links.iter().map(|link| link.shapes.len()).sum();
     let (visuals, collisions) = (number("visual").saturating_sub(kept), number("collision"));
     if visuals + collisions > 0 {
-        let remark =
+        let mut remark =
             format!("{visuals} <visual> and {collisions} <collision>: these shapes have no counterpart");
+        let is_lost = |node: &Node<'_, '_>| {
+            node.has_tag_name("mesh") && node.ancestors().any(|outer| outer.has_tag_name("visual"))
+        };
+        let meshes =
+            links.iter().flat_map(|link| &link.shapes).filter(|s| matches!(s.kind, shapes::Kind::Mesh(..)));
+        if root.descendants().filter(is_lost).count() > meshes.count() {
+            remark += " (or their meshes are not found, in folders above the robot or in ROS_PACKAGE_PATH)";
+        }
         findings.remarks.push(remark);
     }
 }

@@ -2,8 +2,14 @@
 
 use super::*;
 
-const PLAIN: Wishes<'_> =
-    Wishes { root: Root::Fixed, motors: false, armature: None, limits: false, wrenches: &[] };
+const PLAIN: Wishes<'_> = Wishes {
+    root: Root::Fixed,
+    motors: false,
+    armature: None,
+    limits: false,
+    wrenches: &[],
+    folder: Path::new(""),
+};
 const FLOATING: Wishes<'_> = Wishes { root: Root::Floating, ..PLAIN };
 
 const LINKS: &str = r#"<robot name="r">

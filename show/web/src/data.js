@@ -29,7 +29,7 @@ export function readScenes(head, bytes) {
     start += channel.planes * n;
     return values;
   };
-  return head.scenes.map((scene) => {
+  const scenes = head.scenes.map((scene) => {
     const time = next(scene.time, scene.n);
     // The start is zero, whatever rounding makes of it.
     if (scene.n && Math.abs(time[0]) < 1e-9 * Math.abs(time[scene.n - 1])) time[0] = 0;
@@ -44,6 +44,12 @@ export function readScenes(head, bytes) {
     const columns = scene.columns.map((c) => ({ ...c, log: c.channel.log, values: next(c.channel, scene.n) }));
     return { ...scene, time, bodies, columns };
   });
+  const meshes = (head.meshes ?? []).map(({ n, vertices, triangles }) => ({
+    vertices: vertices.map((c) => next(c, n[0])),
+    triangles: next(triangles, 3 * n[1]),
+  }));
+  scenes.forEach((scene) => { scene.meshes = (scene.meshes ?? []).map((place) => meshes[place]); });
+  return scenes;
 }
 
 // The last sample that is not after t.

@@ -87,6 +87,26 @@ const tests = {
     return page;
   },
 
+  async 'meshes are where and as large as their model file says'(browser) {
+    const page = await open(browser, at('wedge'));
+    const box = await page.evaluate(() => {
+      const { picture, scenes: [scene] } = globalThis.gyroPage;
+      const corners = [Infinity, Infinity, Infinity, -Infinity, -Infinity, -Infinity];
+      picture.all[0].bodies[1].group.children[0].traverse((part) => {
+        if (!part.geometry) return;
+        part.geometry.computeBoundingBox();
+        const { min, max } = part.geometry.boundingBox.applyMatrix4(part.matrix);
+        [min.x, min.y, min.z].forEach((x, k) => { corners[k] = Math.min(corners[k], x); });
+        [max.x, max.y, max.z].forEach((x, k) => { corners[3 + k] = Math.max(corners[3 + k], x); });
+      });
+      return { corners, triangles: scene.meshes[0].triangles.length / 3 };
+    });
+    assert.equal(box.triangles, 8);
+    const expected = [-0.05, -0.05, 0, 0.15, 0.05, 0.1];
+    box.corners.forEach((x, k) => assert.ok(Math.abs(x - expected[k]) < 2e-4, `${box.corners}`));
+    return page;
+  },
+
   async 'a click selects a body and shows its numbers'(browser) {
     const page = await open(browser, at('gyroscope'));
     // A point of the picture where there is a moving body, found by asking all over it.

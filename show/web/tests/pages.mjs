@@ -7,6 +7,7 @@ import { LIVE, MODELS, ROOT, STIFF, nameOf } from './models.mjs';
 const OTHERS = [
   ['examples/pendulum.toml', ['--t-end', '1', '--compare', 'length=0.4', '--reactions'], 'compared'],
   ...[...LIVE, STIFF].map(([file, more]) => [file, [...more, '--live'], `live-${nameOf(file)}`]),
+  ['show/web/tests/wedge.toml', [], 'wedge'],
   ['examples/pendulum.toml', ['--t-end', '100', '--every', '0.001', '--step', '0.001'], 'many'],
 ];
 

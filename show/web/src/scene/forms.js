@@ -155,7 +155,7 @@ export function forms(scene) {
     const parts = [];
     const solid = solids[b];
     if (each.shapes?.length) {
-      parts.push(...each.shapes.map((shape) => ({ type: 'shape', ...shape })));
+      parts.push(...each.shapes.map((shape) => ({ type: 'shape', ...shape, surface: scene.meshes[shape.mesh] })));
       return parts;
     }
     if (rings[b]) {

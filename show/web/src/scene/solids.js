@@ -3,6 +3,7 @@ import {
   BoxGeometry, BufferGeometry, Color, ConeGeometry, CylinderGeometry, Float32BufferAttribute, Group, Matrix4, Mesh,
   MeshStandardMaterial, PlaneGeometry, Quaternion, SphereGeometry, TorusGeometry, TubeGeometry, Curve, Vector3,
 } from 'three';
+import { toCreasedNormals } from 'three/addons/utils/BufferGeometryUtils.js';
 import { across as anyAcross, add, cross, dot, middle } from '../vector.js';
 
 const vector = (a) => new Vector3(...a);
@@ -181,12 +182,25 @@ const MAKERS = {
   },
   shape: (part, materials) => {
     const [w, x, y, z] = part.orientation;
+    if (part.surface) {
+      const made = mesh(surface(part.surface), materials.body, part.position, new Quaternion(x, y, z, w));
+      made.scale.set(...part.size);
+      return made;
+    }
     const geometry = part.kind === 'box' ? new BoxGeometry(...part.size)
       : part.kind === 'sphere' ? new SphereGeometry(part.size[0], 36, 24)
         : new CylinderGeometry(part.size[0], part.size[0], part.size[1], 48).rotateX(Math.PI / 2);
     return mesh(geometry, materials.body, part.position, new Quaternion(x, y, z, w));
   },
 };
+
+// Triangles; edges sharper than CREASE are seen as such.
+const CREASE = 0.6;
+function surface({ vertices: [x, y, z], triangles }) {
+  const corners = new Float32Array(3 * triangles.length);
+  triangles.forEach((v, k) => corners.set([x[v], y[v], z[v]], 3 * k));
+  return toCreasedNormals(new BufferGeometry().setAttribute('position', new Float32BufferAttribute(corners, 3)), CREASE);
+}
 
 // The convex hull of points of a plane, by Andrew's chain.
 function hull(points) {
