@@ -9,6 +9,7 @@ mod closed_loop;
 mod columns;
 mod compare;
 mod controllers;
+mod events;
 mod export;
 pub mod failure;
 pub mod files;

@@ -2,8 +2,9 @@
 
 use crate::args::Engine;
 use crate::scene::Scene;
+use crate::verdict::Outcome;
 use crate::words::{count, number, table};
-use crate::{columns, compare, controllers, remarks, verdict};
+use crate::{columns, compare, controllers, events, remarks, verdict};
 use gyro_assembled::Careful;
 use gyro_codegen::Effort;
 use gyro_model::{Model, Move};
@@ -21,16 +22,19 @@ const FEW: usize = 3;
 /// The whole summary.
 pub(crate) fn text(
     scene: &Scene,
-    samples: &[Sample],
-    run: &Summary,
+    Outcome { samples, occurrences, summary: run, .. }: &Outcome,
     verdict: &str,
     written: &[PathBuf],
 ) -> String {
     let last = samples.last().expect("the start is a sample");
     let mut text = head(scene, run, last);
+    if let Some(event) = events::end(&scene.model, occurrences) {
+        let _ = writeln!(text, "ended by event {event}");
+    }
     text += &moved(&scene.moved);
     text += &motion(&scene.model, last);
     text += &outputs(&scene.model, last);
+    text += &events::text(&scene.model, occurrences);
     text += &quality(scene, samples, run, last);
     text += &compare::text(scene, samples);
     text += verdict;

@@ -2,6 +2,7 @@
 
 mod control;
 mod state;
+mod watch;
 
 pub(crate) use state::state;
 
@@ -14,9 +15,10 @@ use crate::motion::{self, Course, Linear, Motion, MotionBuilder, OperatingPoint}
 use crate::offers::Offers;
 use crate::sample::{Observer, work_scale};
 use crate::spectrum::fastest_rate;
+use crate::watch::Watches;
 use crate::{
-    Approach, Coordinates, Correction, Failure, Input, Sample, Schedule, Segment, Settings, Summary, Tracker,
-    describe_in,
+    Approach, Coordinates, Correction, Failure, Input, Occurrence, Sample, Schedule, Segment, Settings,
+    Summary, Tracker, Watch, describe_in,
 };
 use gyro_sim::{
     CorrectedDynamics, Dynamics, Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns,
@@ -45,6 +47,8 @@ pub struct Start {
     pub observed_bodies: Vec<usize>,
     /// What sets inputs in a closed loop; none of them is among `inputs`, and none is set twice.
     pub controllers: Vec<Controller>,
+    /// Events that are looked for, at most [`Watch::MOST`].
+    pub watches: Vec<Watch>,
 }
 
 /// What a run has to tell.
@@ -52,6 +56,8 @@ pub struct Start {
 pub enum Event<'a> {
     /// The mechanism at a sample time.
     Sample(&'a Sample),
+    /// Something that has happened. They come in order of time, before the samples of the step in which they were.
+    Occurred(&'a Occurrence),
     /// The last state, `(q, v)` and what follows them, and its time, s, before a solver fails.
     Stopped(f64, &'a [f64]),
     /// The linearisation at the end, if it is asked for and there is one.
@@ -255,6 +261,7 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     motion: Box<dyn Motion<M>>,
     inputs: &'a [Input],
     controllers: Controllers<M::Scalar>,
+    watches: Watches<M::Scalar>,
     steps_at_once: u64,
     /// Fixed steps that may yet be taken; under error control the solver counts them.
     budget: u64,
@@ -267,7 +274,7 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     summary: Summary,
 }
 
-impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
+impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
     fn new(
         mechanism: &'a mut M,
         motion: Box<dyn Motion<M>>,
@@ -280,7 +287,12 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
             motion,
             inputs: &start.inputs,
             controllers: Controllers::new(&start.controllers),
-            steps_at_once: if any_varies(&start.inputs) { 1 } else { STEPS_BETWEEN_READINGS },
+            watches: Watches::new(&start.watches),
+            steps_at_once: if any_varies(&start.inputs) || !start.watches.is_empty() {
+                1
+            } else {
+                STEPS_BETWEEN_READINGS
+            },
             budget: approach.budget.unwrap_or(u64::MAX),
             turns: Turns::new(mechanism, Scalar::constant(0.0), &y, &angles),
             read_at: 0.0,
@@ -304,6 +316,10 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
             match approach.tolerance {
                 None => self.advance(&segment, told)?,
                 Some(_) => self.advance_beyond(segment.to, settings.t_end, told)?,
+            }
+            if let Some(end) = self.watches.end.filter(|end| *end <= segment.to) {
+                self.record(end, (builder, approach), &mut tracker, told)?;
+                break;
             }
             if segment.samples {
                 self.record(segment.to, (builder, approach), &mut tracker, told)?;
@@ -343,7 +359,7 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         #[expect(clippy::cast_precision_loss, reason = "step numbers stay below 2⁵³")]
         let h = (segment.to - segment.from) / segment.n_steps as f64;
         let mut done = 0;
-        while done < segment.n_steps {
+        while done < segment.n_steps && self.watches.end.is_none() {
             let n_steps = (segment.n_steps - done).min(self.steps_at_once).min(self.budget);
             if n_steps == 0 {
                 let steps = self.motion.statistics().accepted;
@@ -352,6 +368,8 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
             self.set_inputs();
             let began = Instant::now();
             self.control()?;
+            self.look_for_jumps(told)?;
+            let from = self.motion.time();
             let mut taken = 0;
             while taken < n_steps && !(taken > 0 && self.controllers.is_due(self.now())) {
                 self.motion.step(self.mechanism, h)?;
@@ -359,10 +377,11 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
             }
             self.summary.run_time_s += began.elapsed().as_secs_f64();
             (self.budget, done) = (self.budget - taken, done + taken);
+            self.look_into_step(from, told)?;
             self.read_turns(self.motion.time())?;
             told.progress(self.motion.time())?;
         }
-        if segment.corrects {
+        if segment.corrects && self.watches.end.is_none() {
             let began = Instant::now();
             self.motion.correct(self.mechanism)?;
             self.summary.run_time_s += began.elapsed().as_secs_f64();
@@ -382,18 +401,38 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
     ) -> Result<(), Halt> {
         // As the motion counts time: in single precision the end may come before this number.
         let t = M::Scalar::constant(t).to_f64();
-        while self.motion.time() < t {
+        while self.motion.time() < t && self.watches.end.is_none() {
             let began = Instant::now();
             self.control()?;
+            self.look_for_jumps(told)?;
+            let from = self.motion.time();
             let next = M::Scalar::constant(self.controllers.next()).to_f64();
             self.motion.step_towards(self.mechanism, t_end.min(next))?;
             self.summary.run_time_s += began.elapsed().as_secs_f64();
+            self.look_into_step(from, told)?;
             if self.motion.time() <= t {
                 self.read_turns(self.motion.time())?;
             }
             told.progress(self.motion.time())?;
         }
         Ok(())
+    }
+
+    /// Tells of what has happened at once.
+    fn look_for_jumps<F: FnMut(Event<'_>) -> io::Result<()>>(
+        &mut self,
+        told: &mut Told<F>,
+    ) -> Result<(), Halt> {
+        self.watch_jumps()?.iter().try_for_each(|found| Ok((told.tell)(Event::Occurred(found))?))
+    }
+
+    /// Tells of what has happened in the last step, which began at this time.
+    fn look_into_step<F: FnMut(Event<'_>) -> io::Result<()>>(
+        &mut self,
+        from: f64,
+        told: &mut Told<F>,
+    ) -> Result<(), Halt> {
+        self.watch_step(from)?.iter().try_for_each(|found| Ok((told.tell)(Event::Occurred(found))?))
     }
 
     /// The joint form at the last state.

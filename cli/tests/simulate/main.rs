@@ -44,6 +44,7 @@ fn json_is_one_object_and_both_engines_give_the_same() {
             "energy_drift",
             "engine",
             "evaluations",
+            "events",
             "files",
             "inputs",
             "integrator",
