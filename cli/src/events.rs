@@ -68,13 +68,24 @@ pub(crate) fn refuse_stops(model: &Model, what: &str) -> Result<(), Failure> {
 struct Told<'m> {
     name: &'m str,
     what: &'static str,
+    rates: Option<[f64; 2]>,
 }
 
 fn told<'m>(model: &'m Model, occurrence: &Occurrence) -> Told<'m> {
+    let of_contact = |contact: usize, what| Told { name: &model.contacts[contact].name, what, rates: None };
     match occurrence.what {
         What::Crossed { event, rises } => {
-            Told { name: &model.events[event].name, what: if rises { "rises" } else { "falls" } }
+            let what = if rises { "rises" } else { "falls" };
+            Told { name: &model.events[event].name, what, rates: None }
         }
+        What::Hit { contact, before, after } => {
+            let what = if before > 0.0 { "hits upper" } else { "hits lower" };
+            Told { rates: Some([before, after]), ..of_contact(contact, what) }
+        }
+        What::Rests { contact } => of_contact(contact, "rests"),
+        What::Leaves { contact } => of_contact(contact, "leaves"),
+        What::Sticks { contact } => of_contact(contact, "sticks"),
+        What::Slips { contact } => of_contact(contact, "slips"),
     }
 }
 
@@ -105,7 +116,7 @@ pub(crate) fn text(model: &Model, occurrences: &[Occurrence]) -> String {
 
 /// The event that a run has ended at, if it has.
 pub(crate) fn end<'m>(model: &'m Model, occurrences: &[Occurrence]) -> Option<&'m str> {
-    let What::Crossed { event, .. } = occurrences.last()?.what;
+    let What::Crossed { event, .. } = occurrences.last()?.what else { return None };
     model.events[event].stops.then_some(model.events[event].name.as_str())
 }
 
@@ -113,17 +124,21 @@ pub(crate) fn end<'m>(model: &'m Model, occurrences: &[Occurrence]) -> Option<&'
 pub(crate) fn object(model: &Model, occurrences: &[Occurrence]) -> Value {
     let one = |occurrence: &Occurrence| {
         let told = told(model, occurrence);
-        json!({ "t": occurrence.t, "name": told.name, "what": told.what })
+        json!({ "t": occurrence.t, "name": told.name, "what": told.what, "rates": told.rates })
     };
     occurrences.iter().map(one).collect()
 }
 
 /// The same as a table.
 pub(crate) fn csv(model: &Model, occurrences: &[Occurrence]) -> String {
-    let mut text = "t [s],event,what\n".to_owned();
+    let mut text = "t [s],event,what,rate before,rate after\n".to_owned();
     for occurrence in occurrences {
         let told = told(model, occurrence);
-        let _ = writeln!(text, "{:.16e},{},{}", occurrence.t, told.name, told.what);
+        let _ = write!(text, "{:.16e},{},{}", occurrence.t, told.name, told.what);
+        match told.rates {
+            Some([before, after]) => _ = writeln!(text, ",{before:.16e},{after:.16e}"),
+            None => text.push_str(",,\n"),
+        }
     }
     text
 }

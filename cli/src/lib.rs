@@ -8,6 +8,7 @@ mod check;
 mod closed_loop;
 mod columns;
 mod compare;
+mod contacts;
 mod controllers;
 mod events;
 mod export;

@@ -3,7 +3,7 @@
 use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::progress::Spinner;
-use crate::{controllers, events, files, inputs, remarks};
+use crate::{contacts, controllers, events, files, inputs, remarks};
 use gyro_model::{ForceKind, JointKind, Method, Model, Move, Number, Rational, Support};
 use gyro_runner::{
     Approach, Controller, Coordinates, Correction, Input, Offers, Settings, Start, any_varies,
@@ -56,6 +56,7 @@ impl Scene {
         let start_controllers = controllers::controllers(&model);
         let offers = Offers {
             inputs_vary: any_varies(&inputs) || !start_controllers.is_empty(),
+            touches: !model.contacts.is_empty(),
             period: start_controllers.iter().map(Controller::period_s).reduce(f64::min),
             ..offers(&model, args)
         };
@@ -274,6 +275,7 @@ pub(crate) fn start(model: &Model, assembled: &gyro_model::Start) -> Start {
         observed_bodies: observed(model).into_iter().map(|(moving_body, _)| moving_body).collect(),
         controllers: controllers::controllers(model),
         watches: events::watches(model),
+        contacts: contacts::contacts(model),
     }
 }
 

@@ -195,7 +195,7 @@ fn write_table(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<PathB
 /// Beside the samples, where anything is looked for; an earlier list would belie a run without.
 fn write_events(scene: &Scene, outcome: &Outcome, folder: &Path) -> Result<Option<PathBuf>, Failure> {
     let path = events_path(&scene.model.name, folder);
-    if scene.start.watches.is_empty() {
+    if scene.start.watches.is_empty() && scene.start.contacts.is_empty() {
         write::remove(&path);
         return Ok(None);
     }

@@ -4,7 +4,7 @@ use crate::args::Engine;
 use crate::scene::Scene;
 use crate::verdict::Outcome;
 use crate::words::{count, number, table};
-use crate::{columns, compare, controllers, events, remarks, verdict};
+use crate::{columns, compare, contacts, controllers, events, remarks, verdict};
 use gyro_assembled::Careful;
 use gyro_codegen::Effort;
 use gyro_model::{Model, Move};
@@ -141,6 +141,9 @@ fn mechanism(scene: &Scene) -> String {
             let _ = writeln!(text, "input {}: set by controller {}", input.name, controller.name);
             continue;
         }
+        if contacts::acting(model, index).is_some() {
+            continue;
+        }
         let given = scene.start.inputs.iter().find(|given| given.index == index);
         let _ = match given.map(|given| given.rows.as_slice()) {
             None => writeln!(text, "input {} = {:?}", input.name, gyro_model::to_f64(&input.value)),
@@ -155,7 +158,7 @@ fn mechanism(scene: &Scene) -> String {
             }
         };
     }
-    text
+    text + &contacts::text(model)
 }
 
 /// How far the start is from where the model file put it.

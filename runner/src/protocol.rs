@@ -93,8 +93,8 @@ mod tests {
     use super::*;
     use crate::motion::Element;
     use crate::{
-        BodySample, Controller, Coordinates, Correction, Input, Integrator, JointSample, Seen, Watch, What,
-        When, Wiring,
+        BodySample, Controller, Coordinates, Correction, Input, Integrator, JointSample, Seen, Touch, Watch,
+        What, When, Wiring,
     };
     use gyro_sim::{JointPlace, Owner, Passage, Statistics};
     use gyro_yardstick::Measured;
@@ -153,6 +153,13 @@ mod tests {
                         rising: true,
                         falling: false,
                         stops: correct_every.is_some(),
+                    }],
+                    contacts: vec![Touch {
+                        on: (1, 0),
+                        input: 2,
+                        ends: [f64::NEG_INFINITY, AWKWARD[1]],
+                        restitution: AWKWARD[0],
+                        levels: [0.0, AWKWARD[5]],
                     }],
                 },
                 measure_for: correct_every.map(|every| 3.0 * every),

@@ -47,6 +47,7 @@ impl Spinner {
             observed_bodies: vec![0],
             controllers: vec![],
             watches: vec![],
+            contacts: vec![],
         }
     }
 }

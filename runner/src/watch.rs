@@ -54,6 +54,35 @@ pub enum What {
         /// Whether upwards.
         rises: bool,
     },
+    /// A coordinate has hit a stop.
+    Hit {
+        /// Which of [`Start::contacts`](crate::Start::contacts).
+        contact: usize,
+        /// Its rate just before, rad/s or m/s.
+        before: f64,
+        /// Its rate after the impact.
+        after: f64,
+    },
+    /// A coordinate rests on a stop from now on.
+    Rests {
+        /// Which contact.
+        contact: usize,
+    },
+    /// A stop has let a coordinate go.
+    Leaves {
+        /// Which contact.
+        contact: usize,
+    },
+    /// Friction holds a coordinate from now on.
+    Sticks {
+        /// Which contact.
+        contact: usize,
+    },
+    /// A coordinate that stuck begins to move.
+    Slips {
+        /// Which contact.
+        contact: usize,
+    },
 }
 
 /// What is looked for in a run, between one step and the next.
@@ -118,7 +147,7 @@ impl<T: Real> Watches<T> {
 
     /// Notes a crossing; whether the run ends with it.
     pub(crate) fn ends_with(&mut self, occurrence: Occurrence) -> bool {
-        let What::Crossed { event, .. } = occurrence.what;
+        let What::Crossed { event, .. } = occurrence.what else { return false };
         let ends = self.watches[event].stops;
         if ends && self.end.is_none() {
             self.end = Some(occurrence.t);

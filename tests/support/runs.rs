@@ -56,6 +56,7 @@ pub fn start_of(model: &Model) -> Start {
         inputs: Vec::new(),
         controllers: Vec::new(),
         watches: Vec::new(),
+        contacts: Vec::new(),
         knots: Vec::new(),
         observed_bodies: (0..model.coordinate_bodies().len()).collect(),
         positions: start.q,

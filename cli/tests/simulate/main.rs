@@ -3,7 +3,9 @@
 
 mod cells;
 mod closed_loops;
+mod contacts;
 mod controllers;
+mod events;
 mod inputs;
 mod interrupted;
 mod plants;
