@@ -18,7 +18,7 @@ use crate::sample::{Observer, work_scale};
 use crate::spectrum::fastest_rate;
 use crate::watch::Watches;
 use crate::{
-    Approach, Coordinates, Correction, Failure, Input, Occurrence, Sample, Schedule, Segment, Settings,
+    Approach, Coordinates, Correction, Failure, Input, Occurrence, Sample, Schedule, Settings,
     Summary, Touch, Tracker, Watch, describe_in,
 };
 use gyro_sim::{

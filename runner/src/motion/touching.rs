@@ -33,9 +33,17 @@ where
     C: Correction<Joint, M> + 'static,
 {
     Ok(match approach.integrator {
-        Integrator::Rk4 => begin(mechanism, Kutta4::new(x), correction, (approach, x), touches)?,
-        Integrator::Tsit5 => begin(mechanism, Tsit5::new(x), correction, (approach, x), touches)?,
-        Integrator::Dop853 => begin(mechanism, Dop853::new(x), correction, (approach, x), touches)?,
+        Integrator::Rk4 => {
+            let begun = begin(mechanism, Kutta4::new(x), correction, (approach, x), touches)?;
+            Box::new(Contacting {
+                hybrid: begun,
+                // It has no error estimate: one step.
+                towards: |hybrid, mechanism, t_end| hybrid.move_by(mechanism, t_end - hybrid.time()),
+                course: None,
+            })
+        }
+        Integrator::Tsit5 => adaptive(begin(mechanism, Tsit5::new(x), correction, (approach, x), touches)?),
+        Integrator::Dop853 => adaptive(begin(mechanism, Dop853::new(x), correction, (approach, x), touches)?),
         Integrator::Rodas4 => return Err(super::contract::NOT_TOUCHING.to_owned()),
     })
 }
@@ -46,7 +54,7 @@ fn begin<M, A, C>(
     correction: C,
     (approach, x): (&Approach, &M::Joints),
     touches: &[Touch],
-) -> Result<Box<dyn Motion<M>>, String>
+) -> Result<Touching<M, A, C>, String>
 where
     M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
     A: Method<Contacts<Fed<Joint, M>, M::Scalar, MOST>, M> + 'static,
@@ -60,8 +68,24 @@ where
     equations.force(mechanism.clone(), touches.iter().map(|touch| touch.input).collect());
     let zero = Scalar::constant(0.0);
     let hybrid = Hybrid::with_correction(equations, contacts, method, Around(correction), zero, x);
-    Ok(Box::new(Contacting { hybrid: hybrid.with_control(control(approach)), course: None }))
+    Ok(hybrid.with_control(control(approach)))
 }
+
+/// Under error control.
+fn adaptive<M, A, C>(hybrid: Touching<M, A, C>) -> Box<dyn Motion<M>>
+where
+    M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
+    A: Method<Contacts<Fed<Joint, M>, M::Scalar, MOST>, M> + 'static,
+    C: Correction<Joint, M> + 'static,
+{
+    let towards: Towards<M, A, C> =
+        |hybrid, mechanism, t_end| hybrid.move_towards(mechanism, t_end).map(|_| ());
+    Box::new(Contacting { hybrid, towards, course: None })
+}
+
+/// One step, not beyond a time.
+type Towards<M, A, C> =
+    fn(&mut Touching<M, A, C>, &M, <M as gyro_sim::Mechanism>::Scalar) -> Result<(), Error>;
 
 /// A contact along a coordinate of the joint state.
 fn contact<M: JointSpace<Scalar: Real>>(mechanism: &M, touch: &Touch) -> Result<Contact<M::Scalar>, String> {
@@ -91,6 +115,7 @@ fn contact<M: JointSpace<Scalar: Real>>(mechanism: &M, touch: &Touch) -> Result<
 
 struct Contacting<M: JointSpace, A, C> {
     hybrid: Touching<M, A, C>,
+    towards: Towards<M, A, C>,
     course: Option<Course>,
 }
 
@@ -113,7 +138,7 @@ where
             }
             t_end = course.ahead::<M::Scalar>().map_or(t_end, |knot| knot.min(t_end));
         }
-        self.hybrid.move_towards(mechanism, Scalar::constant(t_end)).map(|_| ())
+        (self.towards)(&mut self.hybrid, mechanism, Scalar::constant(t_end))
     }
 
     fn correct(&mut self, mechanism: &M) -> Result<(), Error> {
