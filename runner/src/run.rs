@@ -18,8 +18,8 @@ use crate::sample::{Observer, work_scale};
 use crate::spectrum::fastest_rate;
 use crate::watch::Watches;
 use crate::{
-    Approach, Coordinates, Correction, Failure, Input, Occurrence, Sample, Schedule, Settings,
-    Summary, Touch, Tracker, Watch, describe_in,
+    Approach, Coordinates, Correction, Failure, Input, Occurrence, Sample, Schedule, Settings, Summary,
+    Touch, Tracker, Watch, describe_in,
 };
 use gyro_sim::{
     CorrectedDynamics, Dynamics, Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns,

@@ -157,15 +157,17 @@ fn random_sledges_move_as_parabolas_do() {
             let ([x, v], expected) = sledge.exact(t_end);
             let found = listed(&run, &format!("rail_{k}"));
             let told = format!("case {case}, sledge {k}: {sledge:?}\n{found:?}\n{expected:?}");
-            // Rebounds too slow to matter may be told apart by rounding: a hit more or less.
-            let slow = |speed: f64| speed < 1e-9;
+            // Flights as low as some roundings of the stop's place, 1e-12 m, are not all told from none.
+            let slow = |speed: f64| speed < 1e-5;
             let of_note = |rates: Option<[f64; 2]>| rates.is_none_or(|[before, _]| !slow(before.abs()));
             let found_all: Vec<_> = found.iter().filter(|(.., rates)| of_note(*rates)).collect();
             let expected_all: Vec<_> = expected.iter().filter(|(.., rates)| of_note(*rates)).collect();
             assert_eq!(found_all.len(), expected_all.len(), "{told}");
             for ((t, what, rates), (at, name, expected)) in found_all.iter().zip(&expected_all) {
                 *kinds.entry(what.clone()).or_default() += 1;
-                assert!(what == name && (t - at).abs() < 1e-10, "{what} at {t}: {told}");
+                // They take as long as such a flight.
+                let close = if what == "rests" { 1e-5 } else { 1e-10 };
+                assert!(what == name && (t - at).abs() < close, "{what} at {t}: {told}");
                 if let (Some(rates), Some(expected)) = (rates, expected) {
                     for (rate, expected) in rates.iter().zip(expected) {
                         assert!((rate - expected).abs() < 1e-10, "{told}");

@@ -90,8 +90,8 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         t: T,
         y: &S,
     ) -> Self {
-        let equations = Contacts { dynamics, contacts, phases: [Phase::Free; N] };
         let zero = T::constant(0.0);
+        let equations = Contacts { dynamics, contacts, phases: [Phase::Free; N], largest: zero };
         Self {
             solver: Solver::with_correction(equations, method, Kept(correction), t, y),
             mark: Mark::new(t, y),
