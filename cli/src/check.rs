@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::show::meshes;
 use crate::words::{count, listed, number};
 use crate::write::{self, Known};
-use crate::{columns, controllers, remarks, scene};
+use crate::{columns, contacts, controllers, remarks, scene};
 use gyro_codegen::{Functions, Group, lacks_joint_coordinates};
 use gyro_model::{Attachment, Body, Link, Model, Number, Start, Support, Tree};
 use std::fmt::Write as _;
@@ -181,6 +181,7 @@ fn numbers(model: &Model) -> String {
         }
     }
     text += &controllers::text(model);
+    text += &contacts::text(model);
     for derived in &model.derived_parameters {
         let value = number(model.value(&derived.number), DIGITS);
         let _ = writeln!(text, "computed {} = {} = {value}", derived.name, derived.text);

@@ -33,7 +33,7 @@ pub(crate) fn controllers(model: &Model) -> Vec<Controller> {
     model.controllers.iter().map(one).collect()
 }
 
-fn seen(model: &Model, seen: gyro_model::Seen) -> Seen {
+pub(crate) fn seen(model: &Model, seen: gyro_model::Seen) -> Seen {
     match seen {
         gyro_model::Seen::Output { output, number } => {
             let before = model.outputs[..output].iter().map(|output| output.kind.columns().len());

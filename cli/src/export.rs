@@ -6,6 +6,7 @@ mod fmu;
 pub(crate) mod wasm;
 
 use crate::args::{CArgs, ExportArgs, Precision, Target};
+use crate::contacts;
 use crate::controllers;
 use crate::failure::Failure;
 use crate::generate::{Asked, modules};
@@ -38,6 +39,7 @@ fn c(args: &CArgs) -> Result<(), Failure> {
     let module = module(&args.model, args.functions.as_deref(), args.strict)?;
     let model = scene::read(&args.model)?;
     controllers::say_left_out(&model, "the exported code");
+    contacts::say_left_out(&model, "the exported code");
     let exported = gyro_export::c(&model, &module.code, numbers(args.precision))
         .map_err(|e| unwritten(&args.model, &e))?;
     prove(&args.model, (&model, &module), &exported)?;

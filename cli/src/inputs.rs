@@ -2,7 +2,7 @@
 
 use crate::args::InputSetting;
 use crate::failure::Failure;
-use crate::{controllers, files, words};
+use crate::{contacts, controllers, files, words};
 use gyro_model::{Model, Rational};
 use gyro_runner::{Between, Input};
 use std::path::Path;
@@ -19,6 +19,10 @@ pub(crate) fn inputs(model: &Model, given: &[(String, InputSetting)]) -> Result<
         }
         if let Some(controller) = controllers::setting(model, index) {
             let words = format!("--input {name}: the controller `{}` sets this input", controller.name);
+            return Err(Failure::Usage(words));
+        }
+        if let Some(contact) = contacts::acting(model, index) {
+            let words = format!("--input {name}: this is the force of the contact `{}`", contact.name);
             return Err(Failure::Usage(words));
         }
         let input = match setting {

@@ -2,7 +2,7 @@
 
 use crate::scene::Scene;
 use crate::verdict::{self, Outcome, Verdict};
-use crate::{columns, linearization, remarks};
+use crate::{columns, events, linearization, remarks};
 use gyro_model::Model;
 use gyro_runner::motion::Linear;
 use gyro_runner::{Advice, Difference, JointSample, Sample};
@@ -34,6 +34,7 @@ pub(crate) fn object(
         "inputs": inputs(scene, last),
         "outputs": outputs(&scene.model, &last.outputs),
         "components": components(&scene.model),
+        "events": events::object(&scene.model, &outcome.occurrences),
         "files": files(written),
         "constraint_violation": summary.position_violation,
         "velocity_violation": summary.velocity_violation,
@@ -147,6 +148,7 @@ fn files(written: &[PathBuf]) -> Value {
     let note = "give --out FOLDER to have every sample as a CSV file";
     json!({
         "time_series": tables.first(),
+        "events": tables.get(1),
         "plots": plots,
         "note": tables.is_empty().then_some(note),
     })

@@ -223,7 +223,7 @@ impl Run {
 
     /// The summary as text.
     pub fn text(&self) -> String {
-        summary::text(&self.scene, &self.outcome.samples, &self.outcome.summary, "", &[])
+        summary::text(&self.scene, &self.outcome, "", &[])
     }
 
     /// What the run says of itself that is not good.

@@ -374,6 +374,7 @@ fn listen(output: &mut impl BufRead, tell: &mut impl FnMut(Event<'_>)) -> Result
         interrupt::check()?;
         match reply {
             Reply::Sample(sample) => tell(Event::Sample(&sample)),
+            Reply::Occurred(found) => tell(Event::Occurred(&found)),
             Reply::Linear(linear) => tell(Event::Linear(&linear)),
             Reply::Stopped(t, state) => tell(Event::Stopped(t, &state)),
             Reply::Progress(t) => tell(Event::Progress(t)),

@@ -14,6 +14,8 @@ pub(crate) struct Runs {
     is_implicit: bool,
     /// Linearised, and looked at for singular poses.
     is_examined: bool,
+    /// With rigid stops or friction that sticks.
+    touches: bool,
     /// Whether the mechanism has joint coordinates, in which other runs can be made.
     joint_space: bool,
 }
@@ -27,6 +29,7 @@ impl Runs {
         let runs = Self {
             is_implicit,
             is_examined: examine,
+            touches: scene.offers.touches,
             joint_space: scene.offers.joint_space,
             ..Self::with(coordinates, correction)
         };
@@ -35,7 +38,14 @@ impl Runs {
 
     /// Runs by explicit methods of a mechanism with joint coordinates, not examined.
     pub(crate) fn with(coordinates: Coordinates, correction: Correction) -> Self {
-        Self { coordinates, correction, is_implicit: false, is_examined: false, joint_space: true }
+        Self {
+            coordinates,
+            correction,
+            is_implicit: false,
+            is_examined: false,
+            touches: false,
+            joint_space: true,
+        }
     }
 
     /// The same, linearised and looked at.
@@ -72,6 +82,7 @@ impl Runs {
         let kind = match (self.coordinates, self.correction, self.is_implicit) {
             (Coordinates::Joint, _, true) if has_jacobian => format!("{of}::ImplicitInJoints"),
             (Coordinates::Joint, _, true) => in_duals("ImplicitInJointsByDuals", precision),
+            (Coordinates::Joint, _, false) if self.touches => format!("{of}::InJointsTouching"),
             (Coordinates::Joint, _, false) => format!("{of}::InJoints"),
             (_, _, true) => in_duals("Implicit", precision),
             (_, Correction::Partition, _) => format!("{of}::Partitioned"),

@@ -3,7 +3,7 @@
 use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::progress::Spinner;
-use crate::{controllers, files, inputs, remarks};
+use crate::{contacts, controllers, events, files, inputs, remarks};
 use gyro_model::{ForceKind, JointKind, Method, Model, Move, Number, Rational, Support};
 use gyro_runner::{
     Approach, Controller, Coordinates, Correction, Input, Offers, Settings, Start, any_varies,
@@ -48,13 +48,15 @@ impl Scene {
 
     /// The same of a model that was read before.
     pub(crate) fn of(page: Model, page_name: String, args: &SimulateArgs) -> Result<Self, Failure> {
-        let model = with_parameters(&page, &args.set)?;
+        let mut model = with_parameters(&page, &args.set)?;
+        events::add(&mut model, &args.event)?;
         refuse_joint_coordinates(&model, args)?;
         let (settings, approach) = (settings(&model, args), approach(&model, args));
         let inputs = inputs::inputs(&model, &args.input)?;
         let start_controllers = controllers::controllers(&model);
         let offers = Offers {
             inputs_vary: any_varies(&inputs) || !start_controllers.is_empty(),
+            touches: !model.contacts.is_empty(),
             period: start_controllers.iter().map(Controller::period_s).reduce(f64::min),
             ..offers(&model, args)
         };
@@ -272,6 +274,8 @@ pub(crate) fn start(model: &Model, assembled: &gyro_model::Start) -> Start {
         knots: model.knots(),
         observed_bodies: observed(model).into_iter().map(|(moving_body, _)| moving_body).collect(),
         controllers: controllers::controllers(model),
+        watches: events::watches(model),
+        contacts: contacts::contacts(model),
     }
 }
 

@@ -11,7 +11,9 @@ use crate::remarks::say;
 use crate::scene::Scene;
 use crate::verdict::{self, Outcome};
 use crate::write::{self, Known};
-use crate::{columns, interrupt, json, linearization, nested, plot, quicker, remarks, summary, words};
+use crate::{
+    columns, events, interrupt, json, linearization, nested, plot, quicker, remarks, summary, words,
+};
 use gyro_assembled::{Form, QuickLookError, quick_look};
 use gyro_runner::{Event, Sample, Summary};
 use std::path::{Path, PathBuf};
@@ -24,11 +26,11 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let mut outcome = Outcome::default();
     match run(&scene, &mut outcome) {
         Ok(()) => {}
-        Err(Failure::Interrupted(_)) => return Err(keep_the_part(args, &scene, &outcome.samples, folder)?),
+        Err(Failure::Interrupted(_)) => return Err(keep_the_part(args, &scene, &outcome, folder)?),
         Err(failure) => return Err(keep_what_there_is(&scene, &outcome.samples, folder, failure)),
     }
     let written = match folder {
-        Some(folder) => write_files(&scene, &outcome.samples, folder)?,
+        Some(folder) => write_files(&scene, &outcome, folder)?,
         None => Vec::new(),
     };
     let verdict = match args.verify {
@@ -48,7 +50,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     } else {
         let linear = linear.map_or(String::new(), |linear| linearization::text(&scene.model, linear));
         let verdict = verdict.map_or(String::new(), |verdict| verdict::text(&verdict, &outcome));
-        summary::text(&scene, &outcome.samples, &outcome.summary, &(verdict + &linear), &written)
+        summary::text(&scene, &outcome, &(verdict + &linear), &written)
     };
     say(&text)?;
     if !args.json
@@ -66,8 +68,8 @@ pub(crate) fn simulate_scene(scene: &Scene, folder: &Path) -> Result<(), Failure
     if let Err(failure) = run(scene, &mut outcome) {
         return Err(keep_what_there_is(scene, &outcome.samples, Some(opened.path()), failure));
     }
-    let written = write_files(scene, &outcome.samples, opened.path())?;
-    say(&summary::text(scene, &outcome.samples, &outcome.summary, "", &written))
+    let written = write_files(scene, &outcome, opened.path())?;
+    say(&summary::text(scene, &outcome, "", &written))
 }
 
 /// Runs a scene; what there is up to a failure is kept in the outcome.
@@ -92,9 +94,10 @@ pub(crate) fn follow(
     run: impl FnOnce(&mut dyn FnMut(Event<'_>)) -> Result<Summary, Failure>,
 ) -> Result<(), Failure> {
     let mut progress = Progress::new(scene.settings.t_end);
-    let Outcome { samples, linear, stopped, .. } = outcome;
+    let Outcome { samples, occurrences, linear, stopped, .. } = outcome;
     let mut tell = |event: Event<'_>| match event {
         Event::Sample(sample) => samples.push(sample.clone()),
+        Event::Occurred(found) => occurrences.push(*found),
         Event::Linear(found) => *linear = Some(found.clone()),
         Event::Stopped(t, state) => *stopped = Some((t, state.to_vec())),
         Event::Forecast(forecast) => progress.foretold(&forecast),
@@ -146,7 +149,9 @@ fn folder(args: &SimulateArgs, name: &str) -> Result<Option<Folder>, Failure> {
     };
     let opened = Folder::open(&folder)?;
     let files = plot::NAMES.iter().map(|plot| plot_path(name, plot, &folder));
-    files.chain([table_path(name, &folder)]).try_for_each(|path| write::check(&path, Known::Record))?;
+    files
+        .chain([table_path(name, &folder), events_path(name, &folder)])
+        .try_for_each(|path| write::check(&path, Known::Record))?;
     Ok(Some(opened))
 }
 
@@ -154,12 +159,18 @@ fn plot_path(name: &str, plot: &str, folder: &Path) -> PathBuf {
     folder.join(format!("{name}-{plot}.svg"))
 }
 
+fn events_path(name: &str, folder: &Path) -> PathBuf {
+    folder.join(format!("{name}-events.csv"))
+}
+
 fn table_path(name: &str, folder: &Path) -> PathBuf {
     folder.join(format!("{name}.csv"))
 }
 
-fn write_files(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+fn write_files(scene: &Scene, outcome: &Outcome, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let samples = &outcome.samples;
     let mut written = vec![write_table(scene, samples, folder)?];
+    written.extend(write_events(scene, outcome, folder)?);
     let model = &scene.model;
     if samples.len() == 1 {
         // Nothing moves, and plots of an earlier run would belie it.
@@ -181,6 +192,17 @@ fn write_table(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<PathB
     Ok(path)
 }
 
+/// Beside the samples, where anything is looked for; an earlier list would belie a run without.
+fn write_events(scene: &Scene, outcome: &Outcome, folder: &Path) -> Result<Option<PathBuf>, Failure> {
+    let path = events_path(&scene.model.name, folder);
+    if scene.start.watches.is_empty() && scene.start.contacts.is_empty() {
+        write::remove(&path);
+        return Ok(None);
+    }
+    write::write(&path, events::csv(&scene.model, &outcome.occurrences), Known::Record)?;
+    Ok(Some(path))
+}
+
 fn remove_plots(scene: &Scene, folder: &Path) {
     plot::NAMES.iter().for_each(|name| write::remove(&plot_path(&scene.model.name, name, folder)));
 }
@@ -189,12 +211,13 @@ fn remove_plots(scene: &Scene, folder: &Path) {
 fn keep_the_part(
     args: &SimulateArgs,
     scene: &Scene,
-    samples: &[Sample],
+    outcome: &Outcome,
     folder: Option<&Path>,
 ) -> Result<Failure, Failure> {
+    let samples = &outcome.samples;
     let Some(last) = samples.last() else { return Ok(interrupt::failure()) };
     let written = match folder {
-        Some(folder) => write_files(scene, samples, folder)?,
+        Some(folder) => write_files(scene, outcome, folder)?,
         None => Vec::new(),
     };
     if !args.json {

@@ -2,8 +2,9 @@
 
 use crate::args::Engine;
 use crate::scene::Scene;
+use crate::verdict::Outcome;
 use crate::words::{count, number, table};
-use crate::{columns, compare, controllers, remarks, verdict};
+use crate::{columns, compare, contacts, controllers, events, remarks, verdict};
 use gyro_assembled::Careful;
 use gyro_codegen::Effort;
 use gyro_model::{Model, Move};
@@ -21,16 +22,19 @@ const FEW: usize = 3;
 /// The whole summary.
 pub(crate) fn text(
     scene: &Scene,
-    samples: &[Sample],
-    run: &Summary,
+    Outcome { samples, occurrences, summary: run, .. }: &Outcome,
     verdict: &str,
     written: &[PathBuf],
 ) -> String {
     let last = samples.last().expect("the start is a sample");
     let mut text = head(scene, run, last);
+    if let Some(event) = events::end(&scene.model, occurrences) {
+        let _ = writeln!(text, "ended by event {event}");
+    }
     text += &moved(&scene.moved);
     text += &motion(&scene.model, last);
     text += &outputs(&scene.model, last);
+    text += &events::text(&scene.model, occurrences);
     text += &quality(scene, samples, run, last);
     text += &compare::text(scene, samples);
     text += verdict;
@@ -137,6 +141,9 @@ fn mechanism(scene: &Scene) -> String {
             let _ = writeln!(text, "input {}: set by controller {}", input.name, controller.name);
             continue;
         }
+        if contacts::acting(model, index).is_some() {
+            continue;
+        }
         let given = scene.start.inputs.iter().find(|given| given.index == index);
         let _ = match given.map(|given| given.rows.as_slice()) {
             None => writeln!(text, "input {} = {:?}", input.name, gyro_model::to_f64(&input.value)),
@@ -151,7 +158,7 @@ fn mechanism(scene: &Scene) -> String {
             }
         };
     }
-    text
+    text + &contacts::text(model)
 }
 
 /// How far the start is from where the model file put it.

@@ -13,8 +13,8 @@ use crate::{columns, remarks};
 use gyro_model::{Model, RowOwner};
 use gyro_runner::motion::Linear;
 use gyro_runner::{
-    Approach, Coordinates, Difference, Grade, Judgement, Measure, Plan, Reason, Remark, Sample, Settings,
-    Summary, judge,
+    Approach, Coordinates, Difference, Grade, Judgement, Measure, Occurrence, Plan, Reason, Remark, Sample,
+    Settings, Summary, judge,
 };
 use gyro_sim::{Owner, Statistics};
 use nalgebra::DMatrix;
@@ -38,6 +38,7 @@ pub(crate) struct Verdict {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Outcome {
     pub(crate) samples: Vec<Sample>,
+    pub(crate) occurrences: Vec<Occurrence>,
     pub(crate) summary: Summary,
     pub(crate) linear: Option<Linear>,
     /// The last state before a failure, and its time.

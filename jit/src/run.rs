@@ -4,7 +4,7 @@
 use crate::{Compiled, Interpreted, Native};
 use gyro_runner::motion::{
     ByDuals, ByJacobian, COLUMNS, Direct, Examined, Implicit, ImplicitInJoints, ImplicitInJointsByDuals,
-    InClosedForm, InJoints, Kind, Linearise, MotionBuilder, Nothing, Only, Partitioned, Projected,
+    InClosedForm, InJointsTouching, Kind, Linearise, MotionBuilder, Nothing, Only, Partitioned, Projected,
     Stabilised, Tree, TreeWithJacobian, WithDuals,
 };
 use gyro_runner::protocol::Request;
@@ -75,7 +75,7 @@ fn builder<T: Native + Real>(
     match (approach.coordinates, approach.correction, is_implicit) {
         (Coordinates::Joint, _, true) if has_jacobian => only(mechanism, runs, ImplicitInJoints),
         (Coordinates::Joint, _, true) => only(mechanism, runs, ImplicitInJointsByDuals(duals())),
-        (Coordinates::Joint, _, false) => only(mechanism, runs, InJoints),
+        (Coordinates::Joint, _, false) => only(mechanism, runs, InJointsTouching),
         (_, _, true) => only(mechanism, runs, Implicit(duals())),
         (_, Correction::Partition, _) => only(mechanism, runs, Partitioned),
         (_, Correction::ClosedForm, _) => only(mechanism, runs, InClosedForm),

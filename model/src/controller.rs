@@ -1,6 +1,6 @@
 //! Sampled controllers: laws from outputs to inputs, at their own periods.
 
-use crate::{JointCoordinate, Number, Rational};
+use crate::{JointCoordinate, JointKind, Model, Number, Output, Rational};
 
 /// A law that sees numbers of the mechanism at the multiples of its period and holds inputs in between.
 #[derive(Clone, Debug)]
@@ -63,6 +63,38 @@ pub enum Seen {
     Coordinate(JointCoordinate),
     /// Its rate, rad/s or m/s.
     Rate(JointCoordinate),
+}
+
+impl Model {
+    /// All numbers that can be seen, by the names of their columns in the table of a run.
+    pub fn visible(&self) -> Vec<(String, Seen)> {
+        let joints = self.joints.iter().enumerate();
+        visible(joints.map(|(index, joint)| (index, joint.name.as_str(), joint.kind)), &self.outputs)
+    }
+}
+
+/// The same of joints by their indices, names and kinds.
+pub(crate) fn visible<'a>(
+    joints: impl Iterator<Item = (usize, &'a str, JointKind)>,
+    outputs: &[Output],
+) -> Vec<(String, Seen)> {
+    let mut known = Vec::new();
+    for (joint, name, kind) in joints {
+        let kinds = kind.coordinates();
+        for (coordinate, kind) in kinds.iter().enumerate() {
+            let name = if kinds.len() == 1 { name.to_owned() } else { format!("{name}.{}", kind.name()) };
+            let on = JointCoordinate { joint, coordinate };
+            known.push((format!("{name} rate"), Seen::Rate(on)));
+            known.push((name, Seen::Coordinate(on)));
+        }
+    }
+    for (index, output) in outputs.iter().enumerate() {
+        for (number, (suffix, _)) in output.kind.columns().iter().enumerate() {
+            let dot = if suffix.is_empty() { "" } else { "." };
+            known.push((format!("{}{dot}{suffix}", output.name), Seen::Output { output: index, number }));
+        }
+    }
+    known
 }
 
 impl Controller {

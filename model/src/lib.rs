@@ -10,10 +10,12 @@
 
 mod assemble;
 mod computation;
+mod contact;
 mod controller;
 mod diagnostics;
 mod directions;
 mod elements;
+mod event;
 mod kinematics;
 mod motion;
 mod number;
@@ -29,12 +31,14 @@ mod validate;
 
 pub use assemble::{AssemblyError, JointStart, Move, START_TOLERANCE, Start, StartTolerances};
 pub use computation::Computation;
+pub use contact::Contact;
 pub use controller::{Controller, Law, Seen};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
     CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame, Output,
     OutputKind, StopSide,
 };
+pub use event::{Direction, Event};
 pub use kinematics::Kinematics;
 pub use motion::{BodyMotion, Motion, Prescribed};
 pub use number::{Number, Rational, parse_decimal, to_f64};
@@ -77,6 +81,10 @@ pub struct Model {
     pub outputs: Vec<Output>,
     /// Sampled controllers, which runs close loops with; generated code knows nothing of them.
     pub controllers: Vec<Controller>,
+    /// Events that runs look for; generated code knows nothing of them.
+    pub events: Vec<Event>,
+    /// Rigid stops and friction that sticks: generated code has their forces, as inputs; runs do the rest.
+    pub contacts: Vec<Contact>,
     /// Constraint rows that depend on others and were dropped: found by rank when the model file was read.
     pub redundant: Vec<RedundantRow>,
     /// Whether the state carries the work of what is not conservative, where there is such: see [`Model::has_work`].

@@ -32,6 +32,8 @@ impl Model {
         self.forces.iter().for_each(|force| force.kind.add_numbers(&mut numbers));
         self.outputs.iter().for_each(|output| numbers.extend(output.kind.point().into_iter().flatten()));
         self.controllers.iter().for_each(|controller| numbers.extend(controller.numbers()));
+        numbers.extend(self.events.iter().map(|event| &event.level));
+        self.contacts.iter().for_each(|contact| numbers.extend(contact.numbers()));
         numbers
     }
 }

@@ -207,6 +207,8 @@ impl Model {
         });
         let couplers = self.couplers.iter().flat_map(|coupler| [coupler.first, coupler.second]);
         let prescribed = couplers.chain(self.drivers.iter().map(|driver| driver.coordinate));
+        let stopped = self.contacts.iter().map(|contact| (contact.on, CoordinateUse::Value));
+        let forces = forces.chain(stopped);
         let uses = forces.chain(prescribed.map(|on| (on, CoordinateUse::Prescribed)));
         let of_joint = uses.filter(|(on, _)| on.joint == joint).map(|(_, of)| of);
         let joint = &self.joints[joint];
@@ -238,6 +240,7 @@ impl Model {
                 used.push(on);
             }
         }
+        used.extend(self.contacts.iter().map(|contact| contact.on));
         used.extend(self.couplers.iter().flat_map(|c| [c.first, c.second]));
         used.extend(self.drivers.iter().map(|d| d.coordinate));
         let screws = self.joints.iter().enumerate().filter(|(_, j)| j.kind == JointKind::Screw);

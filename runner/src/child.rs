@@ -57,6 +57,7 @@ pub fn answer<M: Partition<Scalar: Real> + Clone + 'static>(
     let plan: (&Settings, _) = (&request.settings, &request.approach);
     let told = |event: Event<'_>| match event {
         Event::Sample(sample) => write(output, &Reply::Sample(sample.clone())),
+        Event::Occurred(found) => write(output, &Reply::Occurred(*found)),
         Event::Linear(linear) => write(output, &Reply::Linear(linear.clone())),
         Event::Stopped(t, state) => write(output, &Reply::Stopped(t, state.to_vec())),
         Event::Forecast(forecast) => write(output, &Reply::Forecast(forecast)).and_then(|()| output.flush()),

@@ -30,6 +30,8 @@ mod schedule;
 mod spectrum;
 mod summary;
 mod timing;
+mod touch;
+mod watch;
 
 pub use advice::{Advice, Change, Plan};
 pub use approach::{Approach, Coordinates, Correction, Integrator, When};
@@ -47,6 +49,8 @@ pub use schedule::{Impossible, Schedule, Segment, Settings};
 pub use spectrum::fastest_rate;
 pub use summary::{Summary, Tracker, energy_error};
 pub use timing::{Timing, time_by};
+pub use touch::Touch;
+pub use watch::{Occurrence, Watch, What};
 
 /// Where this crate's manifest was when it was compiled: the command line packs its sources.
 #[doc(hidden)]

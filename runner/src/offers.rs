@@ -15,6 +15,8 @@ pub struct Offers {
     pub epsilon: f64,
     /// Whether an input changes during the run.
     pub inputs_vary: bool,
+    /// Whether there are rigid stops or friction that sticks.
+    pub touches: bool,
     /// The shortest period of the controllers, s; `None` without any.
     pub period: Option<f64>,
 }
@@ -33,6 +35,7 @@ impl Offers {
         projection: true,
         epsilon: f64::EPSILON,
         inputs_vary: false,
+        touches: false,
         period: None,
     };
 
@@ -80,6 +83,16 @@ impl Offers {
 
     fn refused_method(&self, approach: &Approach) -> Option<String> {
         let words = match (approach.coordinates, approach.correction) {
+            _ if self.touches && !self.joint_space => {
+                "rigid stops and friction that sticks need joint coordinates: they are for generated code (--engine \
+                 generated or jit) of mechanisms that have them"
+            }
+            (Coordinates::Maximal, _) if self.touches => {
+                "rigid stops and friction that sticks need joint coordinates: choose --coordinates joint"
+            }
+            _ if self.touches && approach.integrator == Integrator::Rodas4 => {
+                "rigid stops and friction that sticks are for explicit methods: choose rk4, tsit5 or dop853"
+            }
             (Coordinates::Joint, _) if !self.joint_space => {
                 "joint coordinates are for generated code of mechanisms that have them"
             }

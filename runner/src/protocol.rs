@@ -5,7 +5,7 @@
 //! its standard output up to one that ends the run, and waits for the next.
 
 use crate::motion::Linear;
-use crate::{Approach, Forecast, Sample, Settings, Start, Summary, Timing};
+use crate::{Approach, Forecast, Occurrence, Sample, Settings, Start, Summary, Timing};
 use nanoserde::{DeBin, SerBin};
 use std::io::{self, BufRead, Read, Write};
 
@@ -29,6 +29,8 @@ pub struct Request {
 pub enum Reply {
     /// The mechanism at a sample time.
     Sample(Sample),
+    /// Something that has happened.
+    Occurred(Occurrence),
     /// The linearisation at the end.
     Linear(Linear),
     /// The last state before the run fails, and its time, s.
@@ -91,7 +93,8 @@ mod tests {
     use super::*;
     use crate::motion::Element;
     use crate::{
-        BodySample, Controller, Coordinates, Correction, Input, Integrator, JointSample, Seen, When, Wiring,
+        BodySample, Controller, Coordinates, Correction, Input, Integrator, JointSample, Seen, Touch, Watch,
+        What, When, Wiring,
     };
     use gyro_sim::{JointPlace, Owner, Passage, Statistics};
     use gyro_yardstick::Measured;
@@ -143,6 +146,21 @@ mod tests {
                         limits: Some([AWKWARD[1], AWKWARD[6]]),
                         ..Controller::default()
                     }],
+                    watches: vec![Watch {
+                        of: Seen::Rate(1, 0),
+                        minus: Some(Seen::Output(2)),
+                        level: AWKWARD[0],
+                        rising: true,
+                        falling: false,
+                        stops: correct_every.is_some(),
+                    }],
+                    contacts: vec![Touch {
+                        on: (1, 0),
+                        input: 2,
+                        ends: [f64::NEG_INFINITY, AWKWARD[1]],
+                        restitution: AWKWARD[0],
+                        levels: [0.0, AWKWARD[5]],
+                    }],
                 },
                 measure_for: correct_every.map(|every| 3.0 * every),
             };
@@ -180,6 +198,7 @@ mod tests {
         };
         for reply in [
             Reply::Sample(sample),
+            Reply::Occurred(Occurrence { t: AWKWARD[6], what: What::Crossed { event: 3, rises: true } }),
             Reply::Linear(Linear {
                 t: AWKWARD[0],
                 elements: vec![

@@ -1,7 +1,9 @@
 //! The loop.
 
+mod advance;
 mod control;
 mod state;
+mod watch;
 
 pub(crate) use state::state;
 
@@ -14,9 +16,10 @@ use crate::motion::{self, Course, Linear, Motion, MotionBuilder, OperatingPoint}
 use crate::offers::Offers;
 use crate::sample::{Observer, work_scale};
 use crate::spectrum::fastest_rate;
+use crate::watch::Watches;
 use crate::{
-    Approach, Coordinates, Correction, Failure, Input, Sample, Schedule, Segment, Settings, Summary, Tracker,
-    describe_in,
+    Approach, Coordinates, Correction, Failure, Input, Occurrence, Sample, Schedule, Settings, Summary,
+    Touch, Tracker, Watch, describe_in,
 };
 use gyro_sim::{
     CorrectedDynamics, Dynamics, Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns,
@@ -45,6 +48,10 @@ pub struct Start {
     pub observed_bodies: Vec<usize>,
     /// What sets inputs in a closed loop; none of them is among `inputs`, and none is set twice.
     pub controllers: Vec<Controller>,
+    /// Events that are looked for, at most [`Watch::MOST`].
+    pub watches: Vec<Watch>,
+    /// Rigid stops and friction that sticks, at most [`Touch::MOST`].
+    pub contacts: Vec<Touch>,
 }
 
 /// What a run has to tell.
@@ -52,6 +59,8 @@ pub struct Start {
 pub enum Event<'a> {
     /// The mechanism at a sample time.
     Sample(&'a Sample),
+    /// Something that has happened. They come in order of time, before the samples of the step in which they were.
+    Occurred(&'a Occurrence),
     /// The last state, `(q, v)` and what follows them, and its time, s, before a solver fails.
     Stopped(f64, &'a [f64]),
     /// The linearisation at the end, if it is asked for and there is one.
@@ -106,6 +115,7 @@ pub fn run_by<M: Partition<Scalar: Real> + Clone + 'static>(
     let offers = Offers {
         epsilon: <M::Scalar as Real>::EPSILON.to_f64(),
         inputs_vary: any_varies(&start.inputs) || !start.controllers.is_empty(),
+        touches: !start.contacts.is_empty(),
         period: start.controllers.iter().map(Controller::period_s).reduce(f64::min),
         ..builder.offers()
     };
@@ -150,7 +160,11 @@ pub(crate) fn begin<M: Partition<Scalar: Real> + Clone>(
     approach: &Approach,
     (y, start): (&M::State, &Start),
 ) -> Result<Box<dyn Motion<M>>, Failure> {
-    let mut motion = builder.begin(mechanism, approach, y).map_err(Failure::Refused)?;
+    let motion = match start.contacts.as_slice() {
+        [] => builder.begin(mechanism, approach, y),
+        contacts => builder.begin_touching(mechanism, approach, y, contacts),
+    };
+    let mut motion = motion.map_err(Failure::Refused)?;
     for input in &start.inputs {
         motion.set_input(input.index, input.at(0.0));
     }
@@ -255,6 +269,7 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     motion: Box<dyn Motion<M>>,
     inputs: &'a [Input],
     controllers: Controllers<M::Scalar>,
+    watches: Watches<M::Scalar>,
     steps_at_once: u64,
     /// Fixed steps that may yet be taken; under error control the solver counts them.
     budget: u64,
@@ -267,7 +282,7 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     summary: Summary,
 }
 
-impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
+impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
     fn new(
         mechanism: &'a mut M,
         motion: Box<dyn Motion<M>>,
@@ -280,7 +295,15 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
             motion,
             inputs: &start.inputs,
             controllers: Controllers::new(&start.controllers),
-            steps_at_once: if any_varies(&start.inputs) { 1 } else { STEPS_BETWEEN_READINGS },
+            watches: Watches::new(&start.watches),
+            steps_at_once: if any_varies(&start.inputs)
+                || !start.watches.is_empty()
+                || !start.contacts.is_empty()
+            {
+                1
+            } else {
+                STEPS_BETWEEN_READINGS
+            },
             budget: approach.budget.unwrap_or(u64::MAX),
             turns: Turns::new(mechanism, Scalar::constant(0.0), &y, &angles),
             read_at: 0.0,
@@ -305,6 +328,10 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
                 None => self.advance(&segment, told)?,
                 Some(_) => self.advance_beyond(segment.to, settings.t_end, told)?,
             }
+            if let Some(end) = self.watches.end.filter(|end| *end <= segment.to) {
+                self.record(end, (builder, approach), &mut tracker, told)?;
+                break;
+            }
             if segment.samples {
                 self.record(segment.to, (builder, approach), &mut tracker, told)?;
             }
@@ -325,6 +352,10 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         tracker: &mut Tracker,
         told: &mut Told<F>,
     ) -> Result<(), Halt> {
+        // Of a motion that is beyond this time what happened has been resolved.
+        if self.motion.time() <= t {
+            self.resolve(told)?;
+        }
         let sample = self.sample(t)?;
         if t > 0.0 {
             self.look_at_pivots(builder, approach, t);
@@ -332,68 +363,6 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         let scale = work_scale(self.mechanism, t, &self.y).max(sample.potential.abs());
         tracker.add(&sample, scale * <M::Scalar as Real>::EPSILON.to_f64());
         Ok((told.tell)(Event::Sample(&sample))?)
-    }
-
-    /// Equal steps, and a correction where the schedule has one.
-    fn advance<F: FnMut(Event<'_>) -> io::Result<()>>(
-        &mut self,
-        segment: &Segment,
-        told: &mut Told<F>,
-    ) -> Result<(), Halt> {
-        #[expect(clippy::cast_precision_loss, reason = "step numbers stay below 2⁵³")]
-        let h = (segment.to - segment.from) / segment.n_steps as f64;
-        let mut done = 0;
-        while done < segment.n_steps {
-            let n_steps = (segment.n_steps - done).min(self.steps_at_once).min(self.budget);
-            if n_steps == 0 {
-                let steps = self.motion.statistics().accepted;
-                return Err(Error::TooManySteps { t: self.motion.time(), steps }.into());
-            }
-            self.set_inputs();
-            let began = Instant::now();
-            self.control()?;
-            let mut taken = 0;
-            while taken < n_steps && !(taken > 0 && self.controllers.is_due(self.now())) {
-                self.motion.step(self.mechanism, h)?;
-                taken += 1;
-            }
-            self.summary.run_time_s += began.elapsed().as_secs_f64();
-            (self.budget, done) = (self.budget - taken, done + taken);
-            self.read_turns(self.motion.time())?;
-            told.progress(self.motion.time())?;
-        }
-        if segment.corrects {
-            let began = Instant::now();
-            self.motion.correct(self.mechanism)?;
-            self.summary.run_time_s += began.elapsed().as_secs_f64();
-            if !self.controllers.is_empty() {
-                self.read_turns(self.motion.time())?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Steps under error control until a time is passed.
-    fn advance_beyond<F: FnMut(Event<'_>) -> io::Result<()>>(
-        &mut self,
-        t: f64,
-        t_end: f64,
-        told: &mut Told<F>,
-    ) -> Result<(), Halt> {
-        // As the motion counts time: in single precision the end may come before this number.
-        let t = M::Scalar::constant(t).to_f64();
-        while self.motion.time() < t {
-            let began = Instant::now();
-            self.control()?;
-            let next = M::Scalar::constant(self.controllers.next()).to_f64();
-            self.motion.step_towards(self.mechanism, t_end.min(next))?;
-            self.summary.run_time_s += began.elapsed().as_secs_f64();
-            if self.motion.time() <= t {
-                self.read_turns(self.motion.time())?;
-            }
-            told.progress(self.motion.time())?;
-        }
-        Ok(())
     }
 
     /// The joint form at the last state.
@@ -434,7 +403,8 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         }
         let sample =
             self.observer.sample(self.mechanism, t, &self.y, &self.turns, self.motion.chart_switches());
-        Ok(Sample { controlled: self.controllers.held().map(|(_, value)| value).collect(), ..sample })
+        let work = sample.work - self.motion.lost();
+        Ok(Sample { work, controlled: self.controllers.held().map(|(_, value)| value).collect(), ..sample })
     }
 
     /// The continuous angle of each coordinate at the last reading; zero for what is not an angle.

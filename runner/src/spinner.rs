@@ -46,6 +46,8 @@ impl Spinner {
             knots: vec![],
             observed_bodies: vec![0],
             controllers: vec![],
+            watches: vec![],
+            contacts: vec![],
         }
     }
 }

@@ -44,6 +44,7 @@ pub fn time_by<M: Partition<Scalar: Real> + Clone + 'static>(
             let t_end = M::Scalar::constant(settings.t_end).to_f64();
             while motion.time() < t_end {
                 motion.step_towards(mechanism, t_end).map_err(in_words)?;
+                motion.resolve(mechanism, &mut |_| ());
             }
         } else {
             for segment in &segments {
@@ -51,6 +52,7 @@ pub fn time_by<M: Partition<Scalar: Real> + Clone + 'static>(
                 let h = (segment.to - segment.from) / segment.n_steps as f64;
                 for _ in 0..segment.n_steps {
                     motion.step(mechanism, h).map_err(in_words)?;
+                    motion.resolve(mechanism, &mut |_| ());
                 }
                 if segment.corrects {
                     motion.correct(mechanism).map_err(in_words)?;

@@ -6,10 +6,12 @@
 
 mod controllers;
 mod elements;
+mod happenings;
 mod numbers;
 
 use controllers::Controller;
 use elements::{Coupler, Driver, Force, Joint, Output};
+use happenings::{Contact, Event};
 use numbers::{Name, Number, Orientation, Plain, Vector};
 use schemars::JsonSchema;
 use std::collections::BTreeMap;
@@ -49,6 +51,8 @@ struct Model {
     force: Option<Vec<Force>>,
     output: Option<Vec<Output>>,
     controller: Option<Vec<Controller>>,
+    event: Option<Vec<Event>>,
+    contact: Option<Vec<Contact>>,
 }
 
 #[derive(JsonSchema)]

@@ -55,6 +55,8 @@ pub fn start_of(model: &Model) -> Start {
         turn_references: turns.map(|turn| start.joints[turn.joint].position[turn.coordinate]).collect(),
         inputs: Vec::new(),
         controllers: Vec::new(),
+        watches: Vec::new(),
+        contacts: Vec::new(),
         knots: Vec::new(),
         observed_bodies: (0..model.coordinate_bodies().len()).collect(),
         positions: start.q,

@@ -1,7 +1,7 @@
 //! The arguments of `simulate`.
 
 use clap::{Args, ValueEnum};
-use gyro_model::{Method, Rational, parse_decimal};
+use gyro_model::{Direction, Method, Rational, parse_decimal};
 use gyro_runner::{Between, Coordinates, Correction, Integrator, When};
 use std::path::PathBuf;
 
@@ -20,6 +20,7 @@ use std::path::PathBuf;
   {program} simulate models/gyroscope.toml --linearize 0.5 --json
   {program} simulate my-gimbal.toml --set rotor_mass=0.085 --json
   {program} simulate my-gimbal.toml --input motor=torque.csv --input brake=0.01
+  {program} simulate examples/pendulum.toml --engine assembled --event hinge=0 --event \"hinge rate>0:stop\"
 
 Exit codes: 0 success; 1 the run failed; 2 the request was invalid; 3 the run completed, but its result is worthless"
 )]
@@ -94,6 +95,12 @@ pub struct SimulateArgs {
     /// are not set keep the model file's value
     #[arg(long, value_name = "NAME=[held:|linear:|smooth:]FILE.csv|NUMBER", value_parser = set_input)]
     pub(crate) input: Vec<(String, InputSetting)>,
+    /// List when a number crosses a level, beside the [[event]] of the model file: what crosses is a column of the run's
+    /// table or the difference of two; `=` for any direction, `>` for upwards, `<` for downwards; with `:stop` the run
+    /// ends there. Crossings are those of the interpolated motion, to rounding; missed may be two that are less than an
+    /// eighth of a step apart (docs/events.md). May be given several times
+    #[arg(long, value_name = "COLUMN[-COLUMN]{=|>|<}LEVEL[:stop]", value_parser = event)]
+    pub(crate) event: Vec<EventSetting>,
     /// Refuse a model with redundant constraint rows instead of dropping the rows with a warning
     #[arg(long)]
     pub(crate) strict: bool,
@@ -207,6 +214,46 @@ pub(crate) enum InputSetting {
     /// Times and values, from a program that is not a command line.
     #[cfg_attr(not(feature = "jit"), expect(dead_code, reason = "only programs give them"))]
     Rows(Vec<[f64; 2]>),
+}
+
+/// What `--event` looks for.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct EventSetting {
+    /// As it was written.
+    pub(crate) text: String,
+    /// What crosses, and what is subtracted from it.
+    pub(crate) of: String,
+    pub(crate) minus: Option<String>,
+    pub(crate) level: Rational,
+    pub(crate) direction: Direction,
+    pub(crate) stops: bool,
+}
+
+fn event(text: &str) -> Result<EventSetting, String> {
+    let expected =
+        "a column, =, > or <, and a level were expected, such as hinge=0.5 or \"hinge rate>0:stop\"";
+    let at = text.find(['=', '<', '>']).ok_or(expected)?;
+    let direction = match &text[at..=at] {
+        ">" => Direction::Rising,
+        "<" => Direction::Falling,
+        _ => Direction::Both,
+    };
+    let (columns, level) = (text[..at].trim(), &text[at + 1..]);
+    let (level, stops) = level.strip_suffix(":stop").map_or((level, false), |level| (level, true));
+    let (of, minus) = columns.split_once('-').map_or((columns, None), |(of, minus)| (of, Some(minus)));
+    if of.trim().is_empty() || minus.is_some_and(|minus| minus.trim().is_empty()) {
+        return Err(expected.to_owned());
+    }
+    let level = parse_decimal(level.trim())
+        .ok_or_else(|| format!("`{}` is not a decimal number, such as -0.08 or 8e-2", level.trim()))?;
+    Ok(EventSetting {
+        text: text.to_owned(),
+        of: of.trim().to_owned(),
+        minus: minus.map(|minus| minus.trim().to_owned()),
+        level,
+        direction,
+        stops,
+    })
 }
 
 fn set_input(text: &str) -> Result<(String, InputSetting), String> {

@@ -2,6 +2,7 @@
 
 use super::{Scratch, module, numbers, prove, say, unwritten};
 use crate::args::WasmArgs;
+use crate::contacts;
 use crate::controllers;
 use crate::failure::Failure;
 use crate::files;
@@ -19,6 +20,7 @@ pub(super) fn wasm(args: &WasmArgs) -> Result<(), Failure> {
     let module = module(&args.model, args.functions.as_deref(), args.strict)?;
     let model = scene::read(&args.model)?;
     controllers::say_left_out(&model, "the exported code");
+    contacts::say_left_out(&model, "the exported code");
     let exported =
         written(&model, &module.code, numbers(args.precision)).map_err(|e| unwritten(&args.model, &e))?;
     prove(&args.model, (&model, &module), &exported.c)?;

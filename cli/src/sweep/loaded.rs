@@ -4,7 +4,7 @@ use super::vocabulary::vocabulary;
 use crate::args::{Effort, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::scene::{self, Scene};
-use crate::{args, controllers, files, inputs};
+use crate::{args, contacts, controllers, events, files, inputs};
 use gyro_model::Model;
 use gyro_runner::Input;
 use gyro_sweep::study::{self, Files, Study, Unreadable, Vocabulary};
@@ -37,6 +37,8 @@ impl Files for Beside<'_> {
     fn model(&mut self, path: &str) -> Result<Vocabulary, Failure> {
         let model = scene::read_counting_work(&self.folder.join(path))?;
         controllers::refuse(&model, "a study")?;
+        contacts::refuse(&model, "a study")?;
+        events::refuse_stops(&model, "a study")?;
         Ok(vocabulary(self.model.insert(model)))
     }
 
@@ -69,7 +71,8 @@ impl Loaded {
             Err(Unreadable::Study(mistakes)) => return Err(Failure::ModelFile(mistakes)),
             Err(Unreadable::Model(failure)) => return Err(failure),
         };
-        let scene = Scene::new(&arguments(&study, folder.join(&study.model)))?;
+        let mut scene = Scene::new(&arguments(&study, folder.join(&study.model)))?;
+        scene.start.watches.clear();
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         Ok(Self { study, scene, text, path: files::shown(path), place, name })
@@ -101,6 +104,7 @@ fn arguments(study: &Study, model: PathBuf) -> SimulateArgs {
         every: run.every,
         set: Vec::new(),
         input: Vec::new(),
+        event: Vec::new(),
         strict: false,
         out: None,
         json: false,

@@ -3,7 +3,9 @@
 
 mod cells;
 mod closed_loops;
+mod contacts;
 mod controllers;
+mod events;
 mod inputs;
 mod interrupted;
 mod plants;
@@ -44,6 +46,7 @@ fn json_is_one_object_and_both_engines_give_the_same() {
             "energy_drift",
             "engine",
             "evaluations",
+            "events",
             "files",
             "inputs",
             "integrator",

@@ -28,6 +28,8 @@ pub struct Contacts<D, T, const N: usize> {
     pub(super) dynamics: D,
     pub(super) contacts: [Contact<T>; N],
     pub(super) phases: [Phase; N],
+    /// The largest accelerations that were compared so far: a force that has come to its bound is no scale itself.
+    pub(super) largest: T,
 }
 
 /// Accelerations of the contacts' coordinates: without forces of contacts, and what unit forces add, row by row.

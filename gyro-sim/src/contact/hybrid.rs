@@ -2,7 +2,6 @@
 
 use super::equations::{Contacts, Forced, Kept};
 use super::guards::{Guards, guards, noise, passed};
-use super::resolve::{Hit, impulses, work};
 use super::{Contact, Phase};
 use crate::contract::Storage;
 use crate::events::{Found, first_falling};
@@ -29,29 +28,49 @@ pub struct Record<T> {
 /// A motion with contacts, by any method that is explicit.
 #[derive(Clone, Debug)]
 pub struct Hybrid<D, S, T, A, C, const N: usize> {
-    solver: Solver<Contacts<D, T, N>, S, T, A, Kept<C>>,
+    pub(super) solver: Solver<Contacts<D, T, N>, S, T, A, Kept<C>>,
     mark: Mark<S, T>,
-    scratch: [S; 2],
+    pub(super) scratch: [S; 2],
     /// The fastest impact on each contact.
-    fastest: [T; N],
-    record: Record<T>,
+    pub(super) fastest: [T; N],
+    pub(super) record: Record<T>,
     is_begun: bool,
+    /// What the last step has ended at, and its length before it was cut short.
+    pending: Option<Pending<T>>,
+    pub(super) changes: [Change<T>; N],
     /// How many events have come without a step between them.
-    stalled: u32,
+    pub(super) stalled: u32,
 }
 
-/// A rebound slower than this part of the fastest impact is none.
-const SLOWEST: f64 = 1e-12;
+/// What a contact has done at an event.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change<T> {
+    /// The rates before and after an impact on a stop.
+    pub hit: Option<[T; 2]>,
+    /// The phases before and after.
+    pub phases: [Phase; 2],
+}
+
+/// What is left to be decided at the end of a step.
+#[derive(Clone, Copy, Debug)]
+enum Pending<T> {
+    /// An event, at which the step has ended, and the length that it had.
+    Event(Next<T>, T),
+    /// What has happened in a step of fixed length.
+    Step,
+}
+
 /// So many events without a step between them mean that there is no consistent way on.
 const MOST_STALLED: u32 = 64;
 /// The end of a step is brought to an event by so many further steps at most.
 const POLISHES: u32 = 3;
 
-/// An event: when, as a fraction of the step, which guards, by kind and contact, and the slope there by the fraction.
-struct Next<T> {
-    theta: T,
-    kind: usize,
-    contact: usize,
+/// An event: when, as a fraction of the step, and which guard, by kind and contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Next<T> {
+    pub(super) theta: T,
+    pub(super) kind: usize,
+    pub(super) contact: usize,
 }
 
 impl<D, S: Storage<T>, T: Real, A, const N: usize> Hybrid<D, S, T, A, Uncorrected, N> {
@@ -71,8 +90,8 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         t: T,
         y: &S,
     ) -> Self {
-        let equations = Contacts { dynamics, contacts, phases: [Phase::Free; N] };
         let zero = T::constant(0.0);
+        let equations = Contacts { dynamics, contacts, phases: [Phase::Free; N], largest: zero };
         Self {
             solver: Solver::with_correction(equations, method, Kept(correction), t, y),
             mark: Mark::new(t, y),
@@ -80,6 +99,8 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
             fastest: [zero; N],
             record: Record { impacts: 0, settled: 0, caught: 0, released: 0, lost: zero },
             is_begun: false,
+            pending: None,
+            changes: [Change { hit: None, phases: [Phase::Free; 2] }; N],
             stalled: 0,
         }
     }
@@ -116,10 +137,26 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         self.solver.statistics()
     }
 
+    /// What each contact has done at the last event, or when it was last decided which contacts hold.
+    pub fn changes(&self) -> &[Change<T>; N] {
+        &self.changes
+    }
+
+    /// The correction.
+    pub fn correction(&self) -> &C {
+        &self.solver.correction().0
+    }
+
+    /// The equations without contacts, to be changed where they hold data of their own: see
+    /// [`Hybrid::system_has_changed`].
+    pub fn dynamics_mut(&mut self) -> &mut D {
+        &mut self.solver.dynamics_mut().dynamics
+    }
+
     /// Replaces the state; which contacts hold is decided anew.
     pub fn set_state(&mut self, y: &S) {
         self.solver.set_state(y);
-        self.is_begun = false;
+        (self.is_begun, self.pending) = (false, None);
     }
 
     /// To be called when the model has changed: which contacts hold is decided anew.
@@ -163,7 +200,23 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         A: Method<Contacts<D, T, N>, M>,
         C: Correction<D, M>,
     {
-        self.begin(model);
+        let is_event = self.move_towards(model, t_end)?;
+        self.resolve(model);
+        Ok(is_event)
+    }
+
+    /// The same, with the state as it is just before the event: the motion within the step can be asked for, and
+    /// [`Hybrid::resolve`] decides what happens.
+    ///
+    /// # Errors
+    /// As [`Hybrid::advance_to`].
+    pub fn move_towards<M>(&mut self, model: &M, t_end: T) -> Result<bool, Error>
+    where
+        D: Forced<M, Scalar = T, State = S>,
+        A: Method<Contacts<D, T, N>, M>,
+        C: Correction<D, M>,
+    {
+        self.resolve(model);
         self.solver.mark(&mut self.mark);
         self.solver.step_towards(model, t_end)?;
         self.pin();
@@ -177,8 +230,24 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
             return Err(Error::StepTooShort { t: self.mark.time().to_f64(), step: 0.0, index: 0 });
         }
         self.end_at(model, h, &next)?;
-        self.settle(model, Some((&next, h)));
+        self.pending = Some(Pending::Event(next, h));
         Ok(true)
+    }
+
+    /// Decides what happens where the last step has ended, and at the start; returns whether there was something to
+    /// decide.
+    pub fn resolve<M>(&mut self, model: &M) -> bool
+    where
+        D: Forced<M, Scalar = T, State = S>,
+    {
+        let is_begun = core::mem::replace(&mut self.is_begun, true);
+        match self.pending.take() {
+            Some(Pending::Event(next, h)) => self.settle(model, Some((&next, h))),
+            Some(Pending::Step) => self.settle(model, None),
+            None if !is_begun => self.settle(model, None),
+            None => return false,
+        }
+        true
     }
 
     /// One step of length `h`; what has happened in it is decided at its end.
@@ -191,25 +260,67 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         A: Method<Contacts<D, T, N>, M>,
         C: Correction<D, M>,
     {
-        self.begin(model);
+        self.move_by(model, h)?;
+        self.resolve(model);
+        Ok(())
+    }
+
+    /// The same, with the state as it is before that: the motion within the step can be asked for, and
+    /// [`Hybrid::resolve`] decides what happens.
+    ///
+    /// # Errors
+    /// As [`Hybrid::step`].
+    pub fn move_by<M>(&mut self, model: &M, h: T) -> Result<(), Error>
+    where
+        D: Forced<M, Scalar = T, State = S>,
+        A: Method<Contacts<D, T, N>, M>,
+        C: Correction<D, M>,
+    {
+        self.resolve(model);
         self.solver.mark(&mut self.mark);
         self.solver.step(model, h)?;
         self.pin();
         let guards = self.guards(model);
-        if guards.as_ref().iter().any(|guard| *guard < T::constant(0.0)) {
-            self.settle(model, None);
+        let is_passed = guards.as_ref().iter().any(|guard| *guard < T::constant(0.0));
+        self.pending = is_passed.then_some(Pending::Step);
+        Ok(())
+    }
+
+    /// Writes the state at a time within the last step, while what happens at its end is not resolved.
+    ///
+    /// # Errors
+    /// As [`Solver::interpolate`].
+    pub fn interpolate<M>(&mut self, model: &M, t: T, out: &mut S) -> Result<(), Error>
+    where
+        D: Forced<M, Scalar = T, State = S>,
+        A: Method<Contacts<D, T, N>, M>,
+        C: Correction<D, M>,
+    {
+        self.solver.interpolate(model, t, out)?;
+        let Contacts { contacts, phases, .. } = self.solver.dynamics();
+        let y = self.solver.state();
+        for (contact, phase) in contacts.iter().zip(phases) {
+            if phase.is_held() {
+                out.as_mut()[contact.coordinate] = y.as_ref()[contact.coordinate];
+                out.as_mut()[contact.rate] = y.as_ref()[contact.rate];
+            }
         }
         Ok(())
     }
 
-    fn begin<M>(&mut self, model: &M)
+    /// Corrects the state now, but for coordinates that are held.
+    ///
+    /// # Errors
+    /// As [`Solver::correct`].
+    pub fn correct<M>(&mut self, model: &M) -> Result<(), Error>
     where
         D: Forced<M, Scalar = T, State = S>,
+        C: Correction<D, M>,
     {
-        if !self.is_begun {
-            self.is_begun = true;
-            self.settle(model, None);
-        }
+        self.solver.mark(&mut self.mark);
+        self.solver.correct(model)?;
+        self.pin();
+        Ok(())
     }
 
     /// Closing loops moves all coordinates by rounding, but not those that are held.
@@ -223,7 +334,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         }
     }
 
-    fn guards<M>(&mut self, model: &M) -> Guards<T, N>
+    pub(super) fn guards<M>(&mut self, model: &M) -> Guards<T, N>
     where
         D: Forced<M, Scalar = T, State = S>,
     {
@@ -308,128 +419,5 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         self.solver.step(model, h)?;
         self.pin();
         Ok(self.guards(model).0[next.kind][next.contact])
-    }
-
-    /// Impacts, rates that friction has brought to zero, and the phases after them.
-    fn settle<M>(&mut self, model: &M, next: Option<(&Next<T>, T)>)
-    where
-        D: Forced<M, Scalar = T, State = S>,
-    {
-        let zero = T::constant(0.0);
-        let Guards(guards) = self.guards(model);
-        let mut y = self.solver.state().clone();
-        let phases = self.solver.dynamics().phases;
-        let contacts = self.solver.dynamics().contacts;
-        let is_due = |kind: usize, k: usize| {
-            guards[kind][k] <= zero
-                || next.is_some_and(|(next, h)| {
-                    let is_it = next.kind == kind && next.contact == k;
-                    is_it || self.is_as_good_as_reached(&contacts[k], phases[k], guards[kind][k], h)
-                })
-        };
-        let at_lower: [bool; N] = core::array::from_fn(|k| !phases[k].is_held() && is_due(0, k));
-        let at_upper: [bool; N] = core::array::from_fn(|k| !phases[k].is_held() && is_due(1, k));
-        let reached: [bool; N] =
-            core::array::from_fn(|k| phases[k].is_held() && (is_due(0, k) || is_due(1, k)));
-        // Friction that has brought a coordinate to rest.
-        for (k, contact) in contacts.iter().enumerate() {
-            let moves = matches!(phases[k], Phase::Up | Phase::Down);
-            let is_it = next.is_some_and(|(next, _)| next.kind == 2 && next.contact == k);
-            if moves && (is_it || guards[2][k] < zero) {
-                y.as_mut()[contact.rate] = zero;
-            }
-        }
-        let hits = self.hits(&mut y, [&at_lower, &at_upper], next.map(|(next, _)| next));
-        self.collide(model, &mut y, &hits);
-        let t = self.solver.time();
-        self.solver.dynamics_mut().choose(model, (t, &y), &reached, &mut self.scratch[0]);
-        self.solver.set_state(&y);
-        self.solver.system_has_changed();
-        self.count(&phases);
-    }
-
-    /// Whether a coordinate is so near a stop that the time to it is rounding.
-    fn is_as_good_as_reached(&self, contact: &Contact<T>, phase: Phase, gap: T, h: T) -> bool {
-        let rate = self.solver.state().as_ref()[contact.rate].abs();
-        let place = self.solver.state().as_ref()[contact.coordinate].abs();
-        !phase.is_held() && gap.abs() <= T::constant(64.0) * T::EPSILON * (rate * h + place)
-    }
-
-    /// The stops that are hit, those that are rested on and those that are touched; and which end each is.
-    fn hits(
-        &mut self,
-        y: &mut S,
-        [at_lower, at_upper]: [&[bool; N]; 2],
-        next: Option<&Next<T>>,
-    ) -> [Option<(Hit<T>, usize)>; N] {
-        let (zero, one) = (T::constant(0.0), T::constant(1.0));
-        let Contacts { contacts, phases, .. } = self.solver.dynamics();
-        core::array::from_fn(|k| {
-            let (outward, end) = match phases[k] {
-                Phase::AtLower => (one, 0),
-                Phase::AtUpper => (-one, 1),
-                _ if at_lower[k] => (one, 0),
-                _ if at_upper[k] => (-one, 1),
-                _ => return None,
-            };
-            let Contact { restitution, coordinate, rate, ends, .. } = contacts[k];
-            let approach = -outward * y.as_ref()[rate];
-            let (x, record) = (&mut y.as_mut()[coordinate], &mut self.record);
-            // Steps of fixed length end beyond.
-            if next.is_none() && (*x - ends[end]) * outward < zero {
-                *x = ends[end];
-            }
-            if approach < zero {
-                // A flight that is too short to be told from none is taken back; another stop that is touched is not
-                // to be passed.
-                let is_own = next.is_some_and(|next| next.kind < 2 && next.contact == k);
-                let is_taken_back = self.stalled > 0 && is_own;
-                record.settled += u64::from(is_taken_back);
-                let outward = if is_taken_back { -outward } else { outward };
-                return Some((Hit { outward, restitution: zero }, end));
-            }
-            let fastest = &mut self.fastest[k];
-            *fastest = if approach > *fastest { approach } else { *fastest };
-            let is_slow = restitution * approach <= T::constant(SLOWEST) * *fastest;
-            record.settled += u64::from(is_slow && approach > zero && restitution > zero);
-            record.impacts += u64::from(approach > zero);
-            Some((Hit { outward, restitution: if is_slow { zero } else { restitution } }, end))
-        })
-    }
-
-    /// Resolves the impacts of coordinates that have reached a stop.
-    fn collide<M>(&mut self, model: &M, y: &mut S, hits: &[Option<(Hit<T>, usize)>; N])
-    where
-        D: Forced<M, Scalar = T, State = S>,
-    {
-        let zero = T::constant(0.0);
-        let equations = self.solver.dynamics();
-        let contacts = &equations.contacts;
-        let rates = contacts.map(|contact| y.as_ref()[contact.rate]);
-        let mut after = rates;
-        if hits.iter().zip(rates).any(|(hit, rate)| hit.is_some() && rate != zero) {
-            let t = self.solver.time();
-            let [base, pushed] = &mut self.scratch;
-            let local = equations.local(model, (t, y), &hits.map(|hit| hit.is_some()), base);
-            let outcome = impulses(&local.compliance, &rates, &hits.map(|hit| hit.map(|(hit, _)| hit)));
-            self.record.lost = self.record.lost - work(&outcome, &rates);
-            equations.push(model, (t, y), &outcome.0, [base, pushed]);
-            after = outcome.1;
-        }
-        for ((contact, hit), after) in contacts.iter().zip(hits).zip(after) {
-            let Some((_, end)) = hit else { continue };
-            y.as_mut()[contact.rate] = after;
-            // What rests is on the stop, to the last bit.
-            if after == zero {
-                y.as_mut()[contact.coordinate] = contact.ends[*end];
-            }
-        }
-    }
-
-    fn count(&mut self, before: &[Phase; N]) {
-        for (before, now) in before.iter().zip(self.solver.dynamics().phases) {
-            self.record.released += u64::from(before.is_held() && !now.is_held());
-            self.record.caught += u64::from(!before.is_held() && now == Phase::Sticks);
-        }
     }
 }

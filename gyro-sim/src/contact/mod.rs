@@ -71,10 +71,11 @@ mod guards;
 mod hybrid;
 mod joint;
 mod resolve;
+mod settle;
 mod small;
 
 pub use equations::{Contacts, Forced, Kept};
-pub use hybrid::{Hybrid, Record};
+pub use hybrid::{Change, Hybrid, Record};
 pub use joint::JointInputs;
 
 use crate::Real;
@@ -113,6 +114,11 @@ impl<T: Real> Contact<T> {
     pub fn with_friction(self, kinetic: T, at_rest: T) -> Option<Self> {
         let is_ordered = T::constant(0.0) <= kinetic && kinetic <= at_rest && at_rest.is_finite();
         is_ordered.then_some(Self { levels: [kinetic, at_rest], ..self })
+    }
+
+    /// Whether it does anything.
+    fn acts(&self) -> bool {
+        self.rubs() || self.ends.iter().any(|end| end.is_finite())
     }
 
     fn rubs(&self) -> bool {

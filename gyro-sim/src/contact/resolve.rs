@@ -135,8 +135,11 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             self.phases = options.map(|(phases, _)| phases[0]);
             return;
         }
-        let local = self.local(model, (t, y), &[true; N], scratch);
+        let acting = self.contacts.map(|contact| contact.acts());
+        let local = self.local(model, (t, y), &acting, scratch);
         let scale = self.scale(&local);
+        self.largest = if scale > self.largest { scale } else { self.largest };
+        let scale = self.largest;
         let mut best: Option<(T, [Phase; N])> = None;
         let mut choice = [0; N];
         loop {

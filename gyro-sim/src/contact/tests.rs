@@ -1,5 +1,6 @@
 //! Motions with contacts that are known piece by piece.
 
+mod fading;
 mod loops;
 
 use super::resolve::{Hit, impulses, work};

@@ -157,6 +157,26 @@ impl<S: Clone, const N: usize> Events<S, N> {
     }
 }
 
+/// The crossings of functions of time alone within an interval, looked for as [`Events`] does within a step: for those
+/// who step and interpolate by other means. `tell` has them in order of time until it breaks.
+///
+/// # Errors
+/// Those of `values` and `tell`.
+pub fn crossings<T: Real, E, const N: usize>(
+    directions: &[Direction; N],
+    [from, to]: [T; 2],
+    mut values: impl FnMut(T) -> Result<[T; N], E>,
+    mut tell: impl FnMut(Crossing<T>) -> Result<ControlFlow<()>, E>,
+) -> Result<ControlFlow<()>, E> {
+    let (one, length) = (T::constant(1.0), to - from);
+    let at = |theta: T| if theta < one { from + theta * length } else { to };
+    scan(
+        directions,
+        |theta| values(at(theta)),
+        |Found { event, theta, rises }| tell(Crossing { event, t: at(theta), rises }),
+    )
+}
+
 fn not_finite<T: Real>(t: T, index: usize) -> Error {
     Error::NotFinite { t: t.to_f64(), index: u16::try_from(index).unwrap_or(u16::MAX) }
 }

@@ -5,12 +5,13 @@ use toml::de::{DeTable, DeValue};
 
 use super::names;
 use super::numbers::{number, numbers, plain_number};
-use super::reader::{NamedJoint, Reader};
+use super::reader::Reader;
 use super::section::{self, Item, Section};
+use super::seen::{self, Known};
 use super::tables;
 use crate::diagnostics::Related;
 use crate::validate::{Owner, Place};
-use crate::{Controller, JointCoordinate, Law, Number, Output, Rational, Seen};
+use crate::{Controller, Law, Number, Output, Rational, Seen};
 
 const KEYS: [&str; 17] = [
     "name",
@@ -61,14 +62,11 @@ const KINDS_KEYS: section::Kinds<'static> = &[
     ("transfer_function", with_common!("numerator", "denominator")),
 ];
 
-/// Names that controllers may use, each with what it is.
-type Known = Vec<(String, Seen)>;
-
 /// Reads all controllers.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, outputs: &[Output]) -> Vec<Controller> {
     let tables = tables::tables(reader, page, "controller");
     let names = tables::names(reader, &tables, Owner::Controller, "controller");
-    let known = measurable(&reader.joints, outputs);
+    let known = seen::known(&reader.joints, outputs);
     let named = tables.iter().zip(names).enumerate();
     let controllers: Vec<Controller> = named
         .map(|(index, ((_, table), name))| {
@@ -78,29 +76,6 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, outputs: &[Outpu
         .collect();
     shared(reader, &controllers);
     controllers
-}
-
-/// By the names of their columns in the table of a run.
-fn measurable(joints: &[NamedJoint], outputs: &[Output]) -> Known {
-    let mut known = Known::new();
-    for (joint, named) in joints.iter().enumerate() {
-        let (Some(name), Some(kind)) = (&named.name, named.kind) else { continue };
-        let kinds = kind.coordinates();
-        for (coordinate, kind) in kinds.iter().enumerate() {
-            let name = if kinds.len() == 1 { name.clone() } else { format!("{name}.{}", kind.name()) };
-            let on = JointCoordinate { joint, coordinate };
-            known.push((format!("{name} rate"), Seen::Rate(on)));
-            known.push((name, Seen::Coordinate(on)));
-        }
-    }
-    for (index, output) in outputs.iter().enumerate() {
-        for (number, (suffix, _)) in output.kind.columns().iter().enumerate() {
-            let dot = if suffix.is_empty() { "" } else { "." };
-            let name = format!("{}{dot}{suffix}", output.name);
-            known.push((name, Seen::Output { output: index, number }));
-        }
-    }
-    known
 }
 
 fn controller(
@@ -118,7 +93,7 @@ fn controller(
     let example = "outputs = [\"...\"]: joint coordinates, their rates, numbers of outputs";
     let outputs = section.require(reader, "outputs", &title, example);
     let outputs: Option<Vec<Seen>> = outputs.and_then(|item| {
-        let all = words(reader, item)?.into_iter().map(|(item, word)| measured(reader, item, word, known));
+        let all = words(reader, item)?.into_iter().map(|(item, word)| seen::named(reader, item, word, known));
         all.collect::<Vec<_>>().into_iter().collect()
     });
     let example = "inputs = [\"...\"], names of [inputs]";
@@ -171,44 +146,6 @@ fn words<'t>(reader: &mut Reader<'_>, item: Item<'t>) -> Option<Vec<(Item<'t>, &
         return None;
     }
     Some(words)
-}
-
-fn measured(reader: &mut Reader<'_>, item: Item<'_>, word: &str, known: &Known) -> Option<Seen> {
-    if let Some((_, measured)) = known.iter().find(|(name, _)| name == word) {
-        return Some(*measured);
-    }
-    if reader.joints.iter().any(|joint| joint.name.is_none() || joint.kind.is_none()) {
-        reader.doubt(item.place);
-        return None;
-    }
-    let names: Vec<&str> = known.iter().map(|(name, _)| name.as_str()).collect();
-    let parts: Vec<&str> =
-        names.iter().copied().filter(|name| name.split(['.', ' ']).next() == Some(word)).collect();
-    let joint = reader.joints.iter().any(|joint| joint.name.as_deref() == Some(word));
-    let (message, label, help) = match (parts.as_slice(), names.as_slice()) {
-        ([_, ..], _) => (
-            format!("`{word}` is not one number"),
-            "has several numbers",
-            format!("write one of {}", names::list(&parts)),
-        ),
-        ([], _) if joint => (
-            format!("joint `{word}` has no coordinate that a controller could see"),
-            "no coordinate here",
-            "add an [[output]] of the body that it turns, and name a number of it".to_owned(),
-        ),
-        ([], []) => (
-            format!("there is nothing called `{word}` to be seen"),
-            "no such output",
-            "add an [[output]] with this name".to_owned(),
-        ),
-        ([], names) => (
-            format!("there is no output `{word}`"),
-            "no such output",
-            format!("{}, or add an [[output]]", names::instead(word, names)),
-        ),
-    };
-    item.wrong(reader, [message, label.to_owned(), help]);
-    None
 }
 
 fn input(reader: &mut Reader<'_>, item: Item<'_>, word: &str) -> Option<usize> {

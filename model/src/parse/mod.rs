@@ -2,9 +2,11 @@
 
 mod bodies;
 mod computed;
+mod contacts;
 mod controllers;
 mod couplings;
 mod driven;
+mod events;
 mod expression;
 mod forces;
 mod joint_start;
@@ -20,6 +22,7 @@ mod point_masses;
 mod reader;
 mod references;
 mod section;
+mod seen;
 mod shapes;
 mod start;
 mod synonyms;

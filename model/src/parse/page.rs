@@ -7,11 +7,13 @@ use super::names;
 use super::numbers::{plain_number, positive};
 use super::reader::Reader;
 use super::section::{Section, keyword};
-use super::{bodies, controllers, couplings, forces, joints, outputs, parameters, point_masses};
+use super::{
+    bodies, contacts, controllers, couplings, events, forces, joints, outputs, parameters, point_masses,
+};
 use crate::validate::{Owner, Place};
-use crate::{Method, Model, Rational, Simulation, to_f64};
+use crate::{Between, Method, Model, Rational, Simulation, to_f64};
 
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 17] = [
     "format",
     "name",
     "gravity",
@@ -27,6 +29,8 @@ const KEYS: [&str; 15] = [
     "force",
     "output",
     "controller",
+    "event",
+    "contact",
 ];
 const SIMULATION_KEYS: [&str; 5] = ["t_end", "step", "correct_every", "sample_every", "method"];
 const METHODS: [(&str, Method); 2] = [("partitioned", Method::Partitioned), ("direct", Method::Direct)];
@@ -37,7 +41,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let page = Section::open(reader, Owner::Page, "the model file", table, &KEYS);
     format(reader, &page);
     let name = name(reader, &page);
-    let parameters::Tables { parameters, derived, inputs, between } = parameters::read(reader, &page);
+    let parameters::Tables { parameters, derived, mut inputs, mut between } = parameters::read(reader, &page);
     let gravity = page.vector_or(reader, "gravity", [0; 3]);
     let counts_work = page.get("count_work").and_then(|item| item.flag(reader)).unwrap_or(true);
     let functions = functions(reader, &page);
@@ -46,9 +50,16 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let joints = joints::read(reader, &page);
     let couplers = couplings::couplers(reader, &page);
     let drivers = couplings::drivers(reader, &page);
-    let forces = forces::read(reader, &page);
+    let mut forces = forces::read(reader, &page);
+    let contacts = contacts::read(reader, &page, inputs.len());
+    for contact in &contacts {
+        inputs.push(contact.own_input());
+        between.push(Between::default());
+        forces.push(contact.own_force());
+    }
     let outputs = outputs::read(reader, &page);
     let controllers = controllers::read(reader, &page, &outputs);
+    let events = events::read(reader, &page, &outputs);
     let redundant = Vec::new();
     let mut model = Model {
         name,
@@ -64,6 +75,8 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         forces,
         outputs,
         controllers,
+        events,
+        contacts,
         redundant,
         counts_work,
         functions,

@@ -19,7 +19,7 @@ use crate::validate::{Owner, Place};
 use crate::{Between, DerivedParameter, Parameter, Rational};
 
 /// Fields that a generated mechanism has besides its inputs.
-const OWN_FIELDS: [&str; 2] = ["parameters", "derived"];
+pub(super) const OWN_FIELDS: [&str; 2] = ["parameters", "derived"];
 
 const BETWEEN: [(&str, Between); 3] =
     [("linear", Between::Linear), ("held", Between::Held), ("smooth", Between::Smooth)];

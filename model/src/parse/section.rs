@@ -50,6 +50,8 @@ impl<'t> Section<'t> {
             Owner::Force(_) => "a force",
             Owner::Output(_) => "an output",
             Owner::Controller(_) => "a controller",
+            Owner::Event(_) => "an event",
+            Owner::Contact(_) => "a contact",
             _ => "something",
         }
     }

@@ -1,6 +1,7 @@
 //! What must hold of a model beyond its syntax. Problems name places of the model file; only the parser knows their
 //! spans.
 
+mod contacts;
 mod controllers;
 mod coordinates;
 mod directions;
@@ -51,6 +52,8 @@ pub(crate) enum Owner {
     ForceEnd(usize, Side),
     Output(usize),
     Controller(usize),
+    Event(usize),
+    Contact(usize),
 }
 
 /// One of the two ends of a joint, a coupler or a link.

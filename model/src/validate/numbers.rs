@@ -2,7 +2,7 @@
 
 use num_traits::{Signed, Zero};
 
-use super::{Owner, Place, Problem, controllers, directions, forces, inertia, shown};
+use super::{Owner, Place, Problem, contacts, controllers, directions, forces, inertia, shown};
 use crate::number::{SIZE_EXPONENT, in_range};
 use crate::{Body, Coupler, Joint, JointKind, Model, Parameter};
 
@@ -33,6 +33,8 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     found.extend(
         model.controllers.iter().enumerate().flat_map(|(index, c)| controllers::problems(model, index, c)),
     );
+    found
+        .extend(model.contacts.iter().enumerate().flat_map(|(index, c)| contacts::problems(model, index, c)));
     found
 }
 

@@ -4,12 +4,18 @@ use super::course::Course;
 use crate::approach::Approach;
 use crate::input::Input;
 use crate::offers::Offers;
+use crate::touch::Touch;
+use crate::watch::What;
 use gyro_sim::{
     CorrectedDynamics, Dynamics, Error, JointLayout, JointPlace, Kinematics, Mechanism, Partition,
     Projection, Real, Statistics,
 };
 use nanoserde::{DeBin, SerBin};
 use std::fmt::Debug;
+
+/// Why there is no motion with contacts.
+pub(super) const NOT_TOUCHING: &str =
+    "rigid stops and friction that sticks are for generated code in joint coordinates, and explicit methods";
 
 /// A motion of a mechanism. The mechanism is handed in at each call, so that its inputs can be set in between.
 pub trait Motion<M: Mechanism> {
@@ -42,6 +48,12 @@ pub trait Motion<M: Mechanism> {
     fn follow(&mut self, inputs: Option<M>, course: Course)
     where
         M: Sized;
+    /// Decides what happens at the end of the last step, or at once, where anything touches; `tell` hears of it.
+    fn resolve(&mut self, _mechanism: &M, _tell: &mut dyn FnMut(What)) {}
+    /// What impacts have taken of the energy so far, J.
+    fn lost(&self) -> f64 {
+        0.0
+    }
     /// What the steps have cost and met.
     fn statistics(&self) -> Statistics;
     /// How often independent coordinates have been chosen anew.
@@ -55,6 +67,19 @@ pub trait MotionBuilder<M: Partition<Scalar: Real>> {
     /// # Errors
     /// What the mechanism lacks for this approach.
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String>;
+    /// A motion with contacts, by methods that are explicit, in joint coordinates.
+    ///
+    /// # Errors
+    /// What the mechanism lacks for this approach.
+    fn begin_touching(
+        &self,
+        _mechanism: &M,
+        _approach: &Approach,
+        _y: &M::State,
+        _contacts: &[Touch],
+    ) -> Result<Box<dyn Motion<M>>, String> {
+        Err(NOT_TOUCHING.to_owned())
+    }
     /// What can be asked for; the precision and the inputs are the run's.
     fn offers(&self) -> Offers {
         Offers { joint_space: false, derivatives: false, projection: false, ..Offers::ALL }

@@ -8,8 +8,10 @@
 use super::course::Course;
 use super::lens::{Lens, Moving, MovingInputs};
 use crate::Input;
-use gyro_sim::{Clearance, Correction, Error, Jacobian, Mechanism, Ode, Scalar};
+use gyro_sim::contact::Forced;
+use gyro_sim::{Clearance, Correction, Error, Jacobian, Joint, JointSpace, Mechanism, Ode, Scalar};
 use std::cell::{Ref, RefCell};
+use std::ops::Range;
 
 /// Equations, perhaps with inputs that follow the time.
 pub(super) struct Fed<L, M: Mechanism> {
@@ -20,6 +22,8 @@ pub(super) struct Fed<L, M: Mechanism> {
 struct Feed<M: Mechanism> {
     mechanism: RefCell<M>,
     pieces: Vec<Piece<M::Scalar>>,
+    /// Of contacts, the inputs that are their forces.
+    forces: Vec<usize>,
 }
 
 /// What an input is until the next knot.
@@ -66,7 +70,16 @@ impl<L, M: Mechanism> Fed<L, M> {
 
     /// From now on the inputs follow their course, in a copy of the mechanism.
     pub(super) fn follow(&mut self, mechanism: M) {
-        self.feed = Some(Box::new(Feed { mechanism: RefCell::new(mechanism), pieces: Vec::new() }));
+        self.feed = Some(Box::new(Feed {
+            mechanism: RefCell::new(mechanism),
+            pieces: Vec::new(),
+            forces: Vec::new(),
+        }));
+    }
+
+    /// From now on these inputs are forces of contacts, set in a copy of the mechanism.
+    pub(super) fn force(&mut self, mechanism: M, forces: Vec<usize>) {
+        self.feed = Some(Box::new(Feed { mechanism: RefCell::new(mechanism), pieces: Vec::new(), forces }));
     }
 
     /// An input changes that follows no course.
@@ -97,6 +110,23 @@ impl<L: Ode<M, Scalar = M::Scalar>, M: Mechanism> Ode<M> for Fed<L, M> {
             None => self.lens.derivative(mechanism, t, y, dy),
             Some(feed) => self.lens.derivative(&feed.at(t), t, y, dy),
         }
+    }
+}
+
+impl<M: JointSpace<Joints: 'static> + 'static> Forced<M> for Fed<Joint, M> {
+    fn rates(&self, mechanism: &M) -> Range<usize> {
+        let layout = mechanism.joint_layout();
+        let n = layout.n_coordinates();
+        n..n + layout.n_rates()
+    }
+
+    fn forced(&self, mechanism: &M, t: M::Scalar, x: &M::Joints, forces: &[M::Scalar], dx: &mut M::Joints) {
+        let Some(feed) = &self.feed else { return self.derivative(mechanism, t, x, dx) };
+        for (input, force) in feed.forces.iter().zip(forces) {
+            feed.mechanism.borrow_mut().set_input(*input, *force);
+        }
+        let mechanism = feed.at(t);
+        self.lens.derivative(&*mechanism, t, x, dx);
     }
 }
 

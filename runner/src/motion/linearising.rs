@@ -6,6 +6,7 @@ use super::linearise::{by_duals, by_jacobian};
 use crate::approach::Approach;
 use crate::offers::Offers;
 use crate::pivots;
+use crate::touch::Touch;
 use gyro_sim::{Dual, JointJacobian, JointLayout, JointSpace, Kinematics, Partition, Real};
 
 /// Runs of other builders, with all that is examined about them.
@@ -69,6 +70,16 @@ where
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         self.runs.begin(mechanism, approach, y)
+    }
+
+    fn begin_touching(
+        &self,
+        mechanism: &M,
+        approach: &Approach,
+        y: &M::State,
+        contacts: &[Touch],
+    ) -> Result<Box<dyn Motion<M>>, String> {
+        self.runs.begin_touching(mechanism, approach, y, contacts)
     }
 
     fn offers(&self) -> Offers {

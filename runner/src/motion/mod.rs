@@ -11,6 +11,7 @@ mod linearise;
 mod linearising;
 mod moving;
 mod single;
+mod touching;
 
 pub use builders::{Any, Projecting, Tree, TreeWithJacobian, WithDuals};
 pub use contract::{COLUMNS, Element, Linear, Maximal, Motion, MotionBuilder, OperatingPoint};
@@ -19,6 +20,6 @@ pub use independent::Closing;
 pub use lens::joints_near;
 pub use linearising::{ByDuals, ByJacobian, Examined, Linearise, Nothing};
 pub use single::{
-    Direct, Implicit, ImplicitInJoints, ImplicitInJointsByDuals, InClosedForm, InJoints, Kind, Only,
-    Partitioned, Projected, Stabilised,
+    Direct, Implicit, ImplicitInJoints, ImplicitInJointsByDuals, InClosedForm, InJoints, InJointsTouching,
+    Kind, Only, Partitioned, Projected, Stabilised,
 };

@@ -57,6 +57,12 @@ fn solver<L, M: Mechanism<Scalar: Real>, S, A, C>(
 where
     S: Clone + Debug + AsRef<[M::Scalar]> + AsMut<[M::Scalar]>,
 {
+    Solver::with_correction(Fed::of(lens), method, Around(correction), Scalar::constant(0.0), y)
+        .with_control(control(approach))
+}
+
+/// How an approach has steps controlled.
+pub(super) fn control(approach: &Approach) -> Control {
     let mut control = Control::default();
     if let Some(tolerance) = approach.tolerance {
         control = control.with_tolerance(tolerance);
@@ -69,8 +75,7 @@ where
         // Never, or when the schedule says so.
         _ => When::Steps(u32::MAX),
     };
-    Solver::with_correction(Fed::of(lens), method, Around(correction), Scalar::constant(0.0), y)
-        .with_control(control)
+    control
 }
 
 /// A method without an error estimate.

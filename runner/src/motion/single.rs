@@ -2,12 +2,14 @@
 //! other equations, no other correction and no dual numbers.
 
 use super::builders::{implicit, in_joints, square};
-use super::contract::{COLUMNS, Motion, MotionBuilder};
+use super::contract::{COLUMNS, Motion, MotionBuilder, NOT_TOUCHING};
 use super::correction::{Boxed, partitioning, watched, weighted};
 use super::lens::{Slopes, joint_duals};
 use super::moving::{adaptive, explicit};
+use super::touching::touching;
 use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
 use crate::offers::Offers;
+use crate::touch::Touch;
 use gyro_sim::{
     Baumgarte, ClosedForm, Corrected, CorrectedDynamics, Dual, Dynamics, Exact, Joint, JointJacobian,
     JointLayout, JointSpace, Kinematics, Partition, Projection, Real, Rodas4, Scalar,
@@ -34,6 +36,19 @@ pub trait Kind<M: Partition<Scalar: Real>> {
     /// # Errors
     /// What the mechanism lacks for this approach.
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String>;
+    /// As [`MotionBuilder::begin_touching`].
+    ///
+    /// # Errors
+    /// What the mechanism lacks for this approach.
+    fn begin_touching(
+        &self,
+        _mechanism: &M,
+        _approach: &Approach,
+        _y: &M::State,
+        _contacts: &[Touch],
+    ) -> Result<Box<dyn Motion<M>>, String> {
+        Err(NOT_TOUCHING.to_owned())
+    }
     /// As [`MotionBuilder::joint_layout`].
     fn joint_layout<'a>(&self, _mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
         None
@@ -47,6 +62,16 @@ impl<K: Kind<M>, M: Partition<Scalar: Real>> MotionBuilder<M> for Only<K> {
             return Err(format!("this program was compiled for other runs than {approach}"));
         }
         self.kind.begin(mechanism, approach, y)
+    }
+
+    fn begin_touching(
+        &self,
+        mechanism: &M,
+        approach: &Approach,
+        y: &M::State,
+        contacts: &[Touch],
+    ) -> Result<Box<dyn Motion<M>>, String> {
+        self.kind.begin_touching(mechanism, approach, y, contacts)
     }
 
     /// What a program for all runs offers: advice may lead there.
@@ -178,6 +203,35 @@ impl<M: Partition<Scalar: Real> + JointSpace + 'static> Kind<M> for InJoints {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         let (x, closing, approach) = in_joints(mechanism, approach, y)?;
         Ok(explicit(Joint, closing, &approach, &x))
+    }
+
+    fn joint_layout<'a>(&self, mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
+        Some(mechanism.joint_layout())
+    }
+}
+
+/// Joint coordinates, with rigid stops and friction that sticks where there are any.
+#[derive(Clone, Copy, Debug)]
+pub struct InJointsTouching;
+
+impl<M: Partition<Scalar: Real> + JointSpace + Clone + 'static> Kind<M> for InJointsTouching {
+    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
+        Kind::<M>::makes(&InJoints, coordinates, correction)
+    }
+
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        InJoints.begin(mechanism, approach, y)
+    }
+
+    fn begin_touching(
+        &self,
+        mechanism: &M,
+        approach: &Approach,
+        y: &M::State,
+        contacts: &[Touch],
+    ) -> Result<Box<dyn Motion<M>>, String> {
+        let (x, closing, approach) = in_joints(mechanism, approach, y)?;
+        touching(mechanism, closing, &approach, &x, contacts)
     }
 
     fn joint_layout<'a>(&self, mechanism: &'a M) -> Option<&'a JointLayout<'a>> {

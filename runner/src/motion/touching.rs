@@ -1,0 +1,201 @@
+//! A motion with rigid stops and friction that sticks, under way.
+
+use super::contract::Motion;
+use super::course::Course;
+use super::feed::{Around, Fed};
+use super::lens::Lens;
+use super::moving::control;
+use crate::approach::{Approach, Integrator};
+use crate::touch::Touch;
+use crate::watch::What;
+use gyro_sim::contact::{Contact, Contacts, Hybrid, Phase};
+use gyro_sim::integrate::Method;
+use gyro_sim::{
+    Correction, Dop853, Error, Joint, JointPlace, JointSpace, Kutta4, Real, Scalar, Statistics, Tsit5,
+};
+
+/// The contacts of a run; those that it does not have do nothing.
+const MOST: usize = Touch::MOST;
+
+type Touching<M, A, C> =
+    Hybrid<Fed<Joint, M>, <M as JointSpace>::Joints, <M as gyro_sim::Mechanism>::Scalar, A, Around<C>, MOST>;
+
+/// A motion with contacts from a joint state on.
+pub(super) fn touching<M, C>(
+    mechanism: &M,
+    correction: C,
+    approach: &Approach,
+    x: &M::Joints,
+    touches: &[Touch],
+) -> Result<Box<dyn Motion<M>>, String>
+where
+    M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
+    C: Correction<Joint, M> + 'static,
+{
+    Ok(match approach.integrator {
+        Integrator::Rk4 => {
+            let begun = begin(mechanism, Kutta4::new(x), correction, (approach, x), touches)?;
+            Box::new(Contacting {
+                hybrid: begun,
+                // It has no error estimate: one step.
+                towards: |hybrid, mechanism, t_end| hybrid.move_by(mechanism, t_end - hybrid.time()),
+                course: None,
+            })
+        }
+        Integrator::Tsit5 => adaptive(begin(mechanism, Tsit5::new(x), correction, (approach, x), touches)?),
+        Integrator::Dop853 => adaptive(begin(mechanism, Dop853::new(x), correction, (approach, x), touches)?),
+        Integrator::Rodas4 => return Err(super::contract::NOT_TOUCHING.to_owned()),
+    })
+}
+
+fn begin<M, A, C>(
+    mechanism: &M,
+    method: A,
+    correction: C,
+    (approach, x): (&Approach, &M::Joints),
+    touches: &[Touch],
+) -> Result<Touching<M, A, C>, String>
+where
+    M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
+    A: Method<Contacts<Fed<Joint, M>, M::Scalar, MOST>, M> + 'static,
+    C: Correction<Joint, M> + 'static,
+{
+    let mut contacts = [Contact::new(0, 0); MOST];
+    for (to, touch) in contacts.iter_mut().zip(touches) {
+        *to = contact(mechanism, touch)?;
+    }
+    let mut equations = Fed::of(Joint);
+    equations.force(mechanism.clone(), touches.iter().map(|touch| touch.input).collect());
+    let zero = Scalar::constant(0.0);
+    let hybrid = Hybrid::with_correction(equations, contacts, method, Around(correction), zero, x);
+    Ok(hybrid.with_control(control(approach)))
+}
+
+/// Under error control.
+fn adaptive<M, A, C>(hybrid: Touching<M, A, C>) -> Box<dyn Motion<M>>
+where
+    M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
+    A: Method<Contacts<Fed<Joint, M>, M::Scalar, MOST>, M> + 'static,
+    C: Correction<Joint, M> + 'static,
+{
+    let towards: Towards<M, A, C> =
+        |hybrid, mechanism, t_end| hybrid.move_towards(mechanism, t_end).map(|_| ());
+    Box::new(Contacting { hybrid, towards, course: None })
+}
+
+/// One step, not beyond a time.
+type Towards<M, A, C> =
+    fn(&mut Touching<M, A, C>, &M, <M as gyro_sim::Mechanism>::Scalar) -> Result<(), Error>;
+
+/// A contact along a coordinate of the joint state.
+fn contact<M: JointSpace<Scalar: Real>>(mechanism: &M, touch: &Touch) -> Result<Contact<M::Scalar>, String> {
+    let layout = mechanism.joint_layout();
+    let (mut coordinate, mut rate) = (0, layout.n_coordinates());
+    for place in layout.places {
+        if let JointPlace::Scalar { joint, coordinate: own } = *place
+            && (usize::from(joint), usize::from(own)) == touch.on
+        {
+            let constant = |x: f64| M::Scalar::constant(x);
+            let contact = Contact::new(coordinate, rate)
+                .with_stops(touch.ends.map(constant), constant(touch.restitution))
+                .and_then(|contact| {
+                    contact.with_friction(constant(touch.levels[0]), constant(touch.levels[1]))
+                });
+            return contact.ok_or_else(|| "the numbers of a contact make none".to_owned());
+        }
+        coordinate += place.n_coordinates();
+        rate += place.n_rates();
+    }
+    let joint = mechanism.description().joints.get(touch.on.0).map_or("", |joint| joint.name);
+    Err(format!(
+        "a rigid stop or friction that sticks is on joint `{joint}`, whose coordinate a coupler or a driver determines: put it \
+         on the joint that moves freely"
+    ))
+}
+
+struct Contacting<M: JointSpace, A, C> {
+    hybrid: Touching<M, A, C>,
+    towards: Towards<M, A, C>,
+    course: Option<Course>,
+}
+
+impl<M, A, C> Motion<M> for Contacting<M, A, C>
+where
+    M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
+    A: Method<Contacts<Fed<Joint, M>, M::Scalar, MOST>, M>,
+    C: Correction<Joint, M>,
+{
+    fn step(&mut self, mechanism: &M, h: f64) -> Result<(), Error> {
+        self.hybrid.move_by(mechanism, Scalar::constant(h))
+    }
+
+    fn step_towards(&mut self, mechanism: &M, t_end: f64) -> Result<(), Error> {
+        let mut t_end = t_end;
+        if let Some(course) = &mut self.course {
+            if let Some(knot) = course.pass::<M::Scalar>(self.hybrid.time().to_f64()) {
+                self.hybrid.dynamics_mut().enter(course, knot);
+                self.hybrid.system_has_changed();
+            }
+            t_end = course.ahead::<M::Scalar>().map_or(t_end, |knot| knot.min(t_end));
+        }
+        (self.towards)(&mut self.hybrid, mechanism, Scalar::constant(t_end))
+    }
+
+    fn correct(&mut self, mechanism: &M) -> Result<(), Error> {
+        self.hybrid.correct(mechanism)
+    }
+
+    fn time(&self) -> f64 {
+        self.hybrid.time().to_f64()
+    }
+
+    fn at(&mut self, mechanism: &M, t: f64, y: &mut M::State) -> Result<(), Error> {
+        let (mut x, t) = (self.hybrid.state().clone(), Scalar::constant(t));
+        self.hybrid.interpolate(mechanism, t, &mut x)?;
+        Joint.show(mechanism, t, &x, y);
+        Ok(())
+    }
+
+    fn set_input(&mut self, index: usize, value: f64) {
+        self.hybrid.dynamics_mut().set_input(index, value);
+        self.hybrid.system_has_changed();
+    }
+
+    fn follow(&mut self, _: Option<M>, course: Course) {
+        self.hybrid.dynamics_mut().enter(&course, 0.0);
+        self.course = Some(course);
+        self.hybrid.system_has_changed();
+    }
+
+    fn resolve(&mut self, mechanism: &M, tell: &mut dyn FnMut(What)) {
+        if !self.hybrid.resolve(mechanism) {
+            return;
+        }
+        for (contact, change) in self.hybrid.changes().iter().enumerate() {
+            if let Some(rates) = change.hit {
+                let [before, after] = rates.map(|rate| rate.to_f64());
+                tell(What::Hit { contact, before, after });
+            }
+            match change.phases {
+                [before, after] if before == after => {}
+                [_, Phase::AtLower | Phase::AtUpper] => tell(What::Rests { contact }),
+                [_, Phase::Sticks] => tell(What::Sticks { contact }),
+                [Phase::AtLower | Phase::AtUpper, _] => tell(What::Leaves { contact }),
+                [Phase::Sticks, _] => tell(What::Slips { contact }),
+                _ => {}
+            }
+        }
+    }
+
+    fn lost(&self) -> f64 {
+        self.hybrid.record().lost.to_f64()
+    }
+
+    fn statistics(&self) -> Statistics {
+        *self.hybrid.statistics()
+    }
+
+    fn chart_switches(&self) -> u64 {
+        Correction::<Fed<Joint, M>, M>::switches(self.hybrid.correction())
+    }
+}

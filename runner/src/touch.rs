@@ -1,0 +1,23 @@
+//! Contacts in a run: rigid stops, and friction that sticks.
+
+use nanoserde::{DeBin, SerBin};
+
+/// What may stop a joint coordinate, hold it, or rub on it.
+#[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
+pub struct Touch {
+    /// Indices of a joint and of one of its coordinates, which is no orientation.
+    pub on: (usize, usize),
+    /// The index of the input that is its force.
+    pub input: usize,
+    /// Where the coordinate is stopped, rad or m; infinite where it is not.
+    pub ends: [f64; 2],
+    /// What is left of the rate after an impact, from 0 to 1.
+    pub restitution: f64,
+    /// The kinetic and the static level of dry friction, N·m or N.
+    pub levels: [f64; 2],
+}
+
+impl Touch {
+    /// Most of a run.
+    pub const MOST: usize = 8;
+}
