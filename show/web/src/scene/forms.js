@@ -301,9 +301,12 @@ export function forms(scene) {
     ghosts: parts.map((each, b) => ghostOf(b, each)),
     // Springs along coordinates: coils about a hinge, or between what slides.
     coils: (mechanism.springs ?? []).map((joint) => coilOf(joints[joint], rotors[joints[joint].ends[1].body] ? shaftOf(joints[joint].ends[1].body) : 0)),
-    joints: joints.map((joint) => jointForm(scene, joint, { thick, rings, rotors, size })),
+    // A body of triangles shows its joints itself.
+    joints: joints.map((joint) => (joint.ends.some(({ body }) => isMesh(bodies[body])) ? [] : jointForm(scene, joint, { thick, rings, rotors, size }))),
   };
 }
+
+const isMesh = (body) => body.shapes?.some(({ kind }) => kind === 'mesh');
 
 // Whether a body with one joint is a slender bar that begins there.
 function isBarBy(solid, ends) {
