@@ -52,9 +52,18 @@ pub struct Unit {
     /// Where their scenarios start, or why they cannot; empty where all start alike.
     #[nserde(proxy = "Starts")]
     pub starts: Vec<Result<Start, String>>,
-    /// For sensitivities the derivatives of each of these starts, those of its positions, velocities and turn
-    /// references by one direction after the other, times the direction's [scale](Plan::scale).
-    pub slopes: Vec<Vec<f64>>,
+    /// For sensitivities the derivatives of each of these starts.
+    pub slopes: Vec<StartSlopes>,
+}
+
+/// The derivatives of a start.
+#[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
+pub enum StartSlopes {
+    /// Those of its positions, velocities and turn references by one direction after the other, times the direction's
+    /// [scale](Plan::scale).
+    Of(Vec<f64>),
+    /// Why there are none.
+    Impossible(String),
 }
 
 /// As they are handed over.
@@ -120,8 +129,28 @@ impl Job {
 trait Runs {
     /// Runs scenarios that follow each other and appends what is kept of them; `starts` and `slopes` have one for each
     /// or are empty.
-    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], slopes: &[Vec<f64>]);
+    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], slopes: &[StartSlopes]);
+
+    /// Runs the blocks of a unit and tells of them in their order.
+    fn run_unit(&mut self, blocks: Blocks<'_>, unit: &Unit, tell: &mut Tell<'_>) -> io::Result<()> {
+        let (mut starts, mut slopes) = (&unit.starts[..], &unit.slopes[..]);
+        for mut block in blocks {
+            let (own, rest) = starts.split_at((block.count as usize).min(starts.len()));
+            starts = rest;
+            let (own_slopes, rest) = slopes.split_at((block.count as usize).min(slopes.len()));
+            slopes = rest;
+            self.run(&mut block, own, own_slopes);
+            tell(block)?;
+        }
+        Ok(())
+    }
 }
+
+/// Blocks without numbers: what is to be run.
+type Blocks<'a> = &'a mut dyn Iterator<Item = Block>;
+
+/// Hears of blocks that have been run.
+type Tell<'a> = dyn FnMut(Block) -> io::Result<()> + 'a;
 
 /// Reads the job, then units; answers with records.
 fn serve<R: Runs>(begin: impl FnOnce(&'static Job) -> R) -> ExitCode {
@@ -145,18 +174,14 @@ fn answer<R: Runs>(
     let job: &'static Job = Box::leak(Box::new(job));
     let mut runs = begin(job);
     while let Some(unit) = read::<Unit>(input)? {
-        let (mut starts, mut slopes) = (&unit.starts[..], &unit.slopes[..]);
-        for block in &unit.blocks {
+        let mut blocks = unit.blocks.iter().map(|block| {
             let (first, count) = job.range(*block);
-            let (own, rest) = starts.split_at((count as usize).min(starts.len()));
-            starts = rest;
-            let (own_slopes, rest) = slopes.split_at((count as usize).min(slopes.len()));
-            slopes = rest;
-            let mut block = Block { first, count, ..Block::default() };
-            runs.run(&mut block, own, own_slopes);
+            Block { first, count, ..Block::default() }
+        });
+        runs.run_unit(&mut blocks, &unit, &mut |block| {
             output.write_all(&block.encode())?;
-            output.flush()?;
-        }
+            output.flush()
+        })?;
     }
     Ok(())
 }

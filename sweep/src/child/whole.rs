@@ -1,6 +1,6 @@
 //! Scenarios as whole runs, as `simulate` makes them.
 
-use super::{Common, Job, Runs, note, serve};
+use super::{Common, Job, Runs, StartSlopes, note, serve};
 use crate::keep::Keeper;
 use crate::record::Block;
 use gyro_runner::motion::MotionBuilder;
@@ -36,7 +36,7 @@ where
     K: MotionBuilder<M>,
     B: Fn(&[f64]) -> (M, K),
 {
-    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], _: &[Vec<f64>]) {
+    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], _: &[StartSlopes]) {
         let common = &mut self.common;
         for row in 0..block.count {
             common.draw(block.first + u64::from(row));
