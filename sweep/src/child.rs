@@ -15,7 +15,7 @@ use crate::plan::{Source, Target};
 use crate::record::Block;
 use crate::{Keep, Keeper, Plan};
 use gyro_runner::protocol::read;
-use gyro_runner::{Approach, Settings, Start, scheduled};
+use gyro_runner::{Approach, Input, Settings, Start, scheduled};
 use nanoserde::{DeBin, SerBin};
 pub use packs::packs;
 pub use sensitive::{packs_sensitive, whole_sensitive};
@@ -193,6 +193,9 @@ struct Common {
     keeper: Keeper<'static>,
     values: Vec<f64>,
     parameters: Vec<f64>,
+    /// What varies of the inputs.
+    inputs: Vec<Input>,
+    has_inputs: bool,
 }
 
 impl Common {
@@ -203,6 +206,8 @@ impl Common {
             keeper: Keeper::new(&job.keep, job.times().len()),
             values: vec![0.0; job.plan.targets.len()],
             parameters: Vec::new(),
+            inputs: Vec::new(),
+            has_inputs: job.plan.targets.iter().any(|of| matches!(of, Target::Input(_) | Target::Table(_))),
         }
     }
 
@@ -210,6 +215,9 @@ impl Common {
     fn draw(&mut self, k: u64) {
         self.source.write(k, &mut self.values);
         self.job.write_parameters(&self.values, &mut self.parameters);
+        if self.has_inputs {
+            self.inputs = self.job.plan.inputs(&self.values);
+        }
     }
 }
 

@@ -124,7 +124,7 @@ where
             }
             layout.write_start(&common.values, x);
             lanes.push(x.clone());
-            inputs.push(job.plan.inputs(&common.values));
+            inputs.push(common.inputs.clone());
         }
         let mut mechanism = many(&parameters);
         for input in &job.start.inputs {

@@ -122,8 +122,7 @@ where
     fn scenario(&mut self, start: Option<(&Start, &StartSlopes)>) -> Result<(), String> {
         let job = self.common.job;
         let mut mechanism = (self.one)(&self.common.parameters);
-        let inputs: Vec<Input> =
-            job.start.inputs.iter().cloned().chain(job.plan.inputs(&self.common.values)).collect();
+        let inputs: Vec<Input> = job.start.inputs.iter().chain(&self.common.inputs).cloned().collect();
         for input in &inputs {
             mechanism.set_input(input.index, input.at(0.0));
         }

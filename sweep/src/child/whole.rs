@@ -59,9 +59,9 @@ where
     M: Partition<Scalar: Real> + Clone + 'static,
     K: MotionBuilder<M>,
 {
-    let Common { job, keeper, values, parameters, .. } = common;
+    let Common { job, keeper, parameters, inputs: varied, .. } = common;
     let mut inputs = job.start.inputs.clone();
-    inputs.extend(job.plan.inputs(values));
+    inputs.extend_from_slice(varied);
     let start = Start { inputs, ..start };
     let run = || {
         let (mut mechanism, builder) = build(parameters);

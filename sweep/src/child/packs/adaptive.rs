@@ -159,7 +159,7 @@ where
         common.draw(scenario);
         check(&common.parameters)?;
         *mechanism = one(&common.parameters);
-        for input in common.job.start.inputs.iter().chain(&common.job.plan.inputs(&common.values)) {
+        for input in common.job.start.inputs.iter().chain(&common.inputs) {
             mechanism.set_input(input.index, input.at(0.0));
         }
         layout.write_start(&common.values, x);
@@ -215,7 +215,7 @@ where
 
 /// What the inputs are in a lane.
 fn write_inputs(common: &Common, lane: usize, inputs: &mut Vec<(usize, f64x8)>) {
-    for input in common.job.start.inputs.iter().chain(&common.job.plan.inputs(&common.values)) {
+    for input in common.job.start.inputs.iter().chain(&common.inputs) {
         let value = input.at(0.0);
         match inputs.iter_mut().find(|(index, _)| *index == input.index) {
             Some((_, pack)) => set_lane(pack, lane, value),
