@@ -19,8 +19,9 @@ use gyro_runner::{Approach, Input, Settings, Start, scheduled};
 use nanoserde::{DeBin, SerBin};
 pub use packs::packs;
 pub use sensitive::{packs_sensitive, whole_sensitive};
-use std::io::{self, BufRead, Write};
+use std::io::{self, BufRead, BufWriter, Write};
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 pub use whole::whole;
 
 /// What is to be run: all that a program needs to know of a study.
@@ -164,6 +165,9 @@ fn serve<R: Runs>(begin: impl FnOnce(&'static Job) -> R) -> ExitCode {
     }
 }
 
+/// Short blocks are handed over together: to wake a reader takes longer than a scenario.
+const SEND_EVERY: Duration = Duration::from_millis(20);
+
 fn answer<R: Runs>(
     begin: impl FnOnce(&'static Job) -> R,
     input: &mut impl BufRead,
@@ -173,15 +177,22 @@ fn answer<R: Runs>(
     // One job for the life of the program.
     let job: &'static Job = Box::leak(Box::new(job));
     let mut runs = begin(job);
+    let mut output = BufWriter::with_capacity(1 << 16, output);
     while let Some(unit) = read::<Unit>(input)? {
         let mut blocks = unit.blocks.iter().map(|block| {
             let (first, count) = job.range(*block);
             Block { first, count, ..Block::default() }
         });
+        let mut sent = Instant::now();
         runs.run_unit(&mut blocks, &unit, &mut |block| {
             output.write_all(&block.encode())?;
+            if sent.elapsed() < SEND_EVERY {
+                return Ok(());
+            }
+            sent = Instant::now();
             output.flush()
         })?;
+        output.flush()?;
     }
     Ok(())
 }
