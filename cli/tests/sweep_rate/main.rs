@@ -148,8 +148,8 @@ fn kernels(folder: &Folder, is_native: bool) -> PathBuf {
 /// Processor time of a scenario, µs, as the difference of many and few: by the kernels alone; in a sweep; and in one
 /// that writes its tables. Rounds are in turns; medians, and those of the quotients within a round.
 fn processor_times(is_native: bool) {
-    const MANY: u64 = 262_144;
-    const FEW: u64 = 16_384;
+    const MANY: u64 = 1 << 20;
+    const FEW: u64 = 1 << 15;
     let folder = Folder::new(if is_native { "native" } else { "baseline" });
     let words = if is_native { vec!["--threads", "1", "--native"] } else { vec!["--threads", "1"] };
     let sweep = Sweep { folder: &folder, words };
@@ -234,11 +234,13 @@ fn instructions_of_a_sweep_beside_its_kernels() {
     );
 }
 
-/// Two threads of one sweep beside two sweeps of one thread at once, each of one half.
+/// Two threads of one sweep beside two sweeps of one thread at once, each of one half; differences of many and few
+/// scenarios, so that the start of a sweep does not count.
 #[test]
 #[ignore = "measures"]
 fn two_threads_beside_two_programs() {
-    const SCENARIOS: u64 = 524_288;
+    const MANY: u64 = 3 << 18;
+    const FEW: u64 = 3 << 14;
     let folder = Folder::new("threads");
     let sweep = Sweep { folder: &folder, words: Vec::new() };
     ran(sweep.command(1024, &[], "first").spawn().unwrap());
@@ -248,17 +250,21 @@ fn two_threads_beside_two_programs() {
         children.into_iter().for_each(ran);
         [began.elapsed().as_secs_f64(), processor() - before]
     };
+    // One of three parts: as much as two of six. Parts have no tables.
+    let both = |n: u64| timed(vec![sweep.command(n, &["--threads", "2", "--shard", "1/3"], "both")]);
+    let halves = |n: u64| {
+        let half = |k, out| sweep.command(n, &["--threads", "1", "--shard", k], out);
+        timed(vec![half("1/6", "first"), half("4/6", "second")])
+    };
+    let each = |run: &dyn Fn(u64) -> [f64; 2]| {
+        let (many, few) = (run(MANY), run(FEW));
+        [many[0] - few[0], many[1] - few[1]]
+    };
     let before = load();
     let mut quotients: [Vec<f64>; 2] = [const { Vec::new() }; 2];
     for _ in 0..rounds() {
-        // One of three parts: as much as two of six.
-        let one = || vec![sweep.command(SCENARIOS, &["--threads", "2", "--shard", "1/3"], "both")];
-        let two = || {
-            let half = |k, out| sweep.command(SCENARIOS, &["--threads", "1", "--shard", k], out);
-            vec![half("1/6", "first"), half("2/6", "second")]
-        };
         // In both orders, as the machine may get busier meanwhile.
-        let (a, b, c, d) = (timed(one()), timed(two()), timed(two()), timed(one()));
+        let (a, b, c, d) = (each(&both), each(&halves), each(&halves), each(&both));
         for (k, quotients) in quotients.iter_mut().enumerate() {
             quotients.push((b[k] + c[k]) / (a[k] + d[k]));
         }
