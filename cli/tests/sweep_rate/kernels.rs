@@ -1,5 +1,6 @@
-//! Gyroscopes over 0.1 s under error control to 1e-6, in lanes, and nothing else: no draws, no records, no files, no other
-//! program. `kernels N` runs N of them, with parameters that were drawn before, and prints the sum of where they end.
+//! Gyroscopes over 0.1 s under error control to 1e-6, in lanes, and nothing else: no draws, no records, no files, no
+//! other program. `kernels N` runs N of them, with parameters that were drawn before, and prints the sum of where they
+//! end.
 
 #[allow(warnings, clippy::all)]
 mod mechanism;

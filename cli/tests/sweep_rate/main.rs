@@ -1,7 +1,9 @@
-//! What a sweep costs beside its kernels: programs run in turns, and processor time, instructions and time are compared.
+//! What a sweep costs beside its kernels: programs run in turns, and processor time, instructions and time are
+//! compared.
 //!
-//! They measure, so they are run by themselves and optimised: `cargo test --release --package gyro-cli --test sweep_rate
-//! -- --ignored --nocapture --test-threads 1`. `GYRO_ROUNDS=21` runs more rounds. Nothing is asserted of a time.
+//! They measure, so they are run by themselves and optimised: `cargo test --release --package gyro-cli --test
+//! sweep_rate -- --ignored --nocapture --test-threads 1`. `GYRO_ROUNDS=21` runs more rounds. Nothing is asserted of a
+//! time.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "it is read by people")]
@@ -173,7 +175,8 @@ fn processor_times(is_native: bool) {
     let [bare, part, whole] = measured.each_ref().map(|all| median(all.clone()));
     let what = if is_native { "--native" } else { "baseline" };
     println!(
-        "{what}: kernels {bare:.2} us, sweep {part:.2} us, with tables {whole:.2} us of processor time a scenario; rate \
+        "{what}: kernels {bare:.2} us, sweep {part:.2} us, with tables {whole:.2} us of processor time a scenario; \
+         rate \
          {quotient:.3} of the kernels' own; machinery with tables {rest:.2} us ({} rounds, {before})",
         rounds()
     );
@@ -229,7 +232,8 @@ fn instructions_of_a_sweep_beside_its_kernels() {
     let part = each(&|n| sweep.command(2 * n, &["--shard", "1/2"], "part"));
     let whole = each(&|n| sweep.command(n, &[], "whole"));
     println!(
-        "kernels {bare:.0}, sweep {part:.0}, with tables {whole:.0} instructions a scenario; rate {:.3} of the kernels' own",
+        "kernels {bare:.0}, sweep {part:.0}, with tables {whole:.0} instructions a scenario; \
+         rate {:.3} of the kernels' own",
         bare / part
     );
 }
@@ -271,7 +275,8 @@ fn two_threads_beside_two_programs() {
     }
     let [wall, processor] = quotients.map(median);
     println!(
-        "two threads: rate {wall:.3} of two programs', by processor time {processor:.3} ({} rounds, {before}, after {})",
+        "two threads: rate {wall:.3} of two programs', by processor time {processor:.3} \
+         ({} rounds, {before}, after {})",
         rounds(),
         load()
     );
