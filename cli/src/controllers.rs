@@ -1,6 +1,5 @@
 //! Controllers of a model as a run has them.
 
-use crate::failure::Failure;
 use crate::remarks;
 use crate::words::{count, number};
 use gyro_model::{Law, Model, to_f64};
@@ -56,17 +55,6 @@ pub(crate) fn say_left_out(model: &Model, what: &str) {
             "{what} leaves out {} of the model file: its inputs are the caller's to set",
             count(model.controllers.len() as u64, "controller")
         ));
-    }
-}
-
-/// Refuses a model with controllers.
-pub(crate) fn refuse(model: &Model, what: &str) -> Result<(), Failure> {
-    match model.controllers.first() {
-        None => Ok(()),
-        Some(first) => Err(Failure::Usage(format!(
-            "{what} cannot close loops yet, and `{}` has the controller `{}`: take [[controller]] out of the model file",
-            model.name, first.name
-        ))),
     }
 }
 

@@ -427,3 +427,38 @@ fn tables_are_between_their_rows_as_inputs_are() {
     }
     assert!(found[0][2] != found[1][2] && found[1][2] != found[2][2]);
 }
+
+/// Each scenario has the controllers of its own parameters, as `simulate --set` has them.
+#[test]
+#[ignore = "compiles programs"]
+fn scenarios_have_the_controllers_of_their_parameters() {
+    let folder = Folder::new();
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/controlled-gyroscope.toml");
+    let model = fs::read_to_string(model).unwrap();
+    let gained =
+        model.replace("kp = -2e-3", "kp = \"gain\"").replace("setpoint = 0.02", "setpoint = \"aim\"");
+    let gained = gained.replace("[inputs]", "[parameters]\ngain = -2e-3\naim = 0.02\n\n[inputs]");
+    fs::write(folder.0.join("closed.toml"), gained).unwrap();
+    let study = folder.0.join("study.toml");
+    let text = "format = 1\nmodel = \"closed.toml\"\nrun = { t_end = 0.2, tolerance = 1e-8, integrator = \"dop853\" }\n\
+        keep = { final = [\"alpha\", \"beta rate\"] }\n\
+        vary = [{ parameter = [\"gain\", \"aim\"], values = [[-2e-3, 0.02], [-1e-3, 0.02], [-1e-3, 0.03]] }]\n";
+    fs::write(&study, text).unwrap();
+    ran(&[study.to_str().unwrap(), "--out", folder.0.join("out").to_str().unwrap()]);
+    let found = rows(&folder.0.join("out/scenarios.csv"));
+    for (k, row) in found.iter().enumerate() {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gyro"));
+        let out = folder.0.join(format!("{k}"));
+        command.args(["simulate", folder.0.join("closed.toml").to_str().unwrap()]);
+        command.args(["--set", &format!("gain={}", row[1]), "--set", &format!("aim={}", row[2])]);
+        command.args(["--t-end", "0.2", "--tolerance", "1e-8", "--integrator", "dop853", "--out"]).arg(&out);
+        assert!(command.output().unwrap().status.success());
+        let text = fs::read_to_string(out.join("controlled_gyroscope.csv")).unwrap();
+        let place =
+            |name: &str| text.lines().next().unwrap().split(',').position(|other| other == name).unwrap();
+        let last: Vec<f64> =
+            text.lines().last().unwrap().split(',').map(|cell| cell.parse().unwrap()).collect();
+        assert_eq!(row[3..5], [last[place("alpha [rad]")], last[place("beta rate [rad/s]")]], "{k}");
+    }
+    assert!(found[0][3] != found[1][3] && found[1][3] != found[2][3]);
+}

@@ -83,7 +83,7 @@ fn study(random: &mut Random) -> String {
     let draws = [
         "parameter = [\"offset_x\", \"offset_y\"]\nwithin = 2e-5",
         // Some of these are of no rotor.
-        "parameter = \"product_xy\"\nnormal = [0, 1e-5]\ntruncated = [-3e-5, 3e-5]",
+        "parameter = \"product_xy\"\nnormal = [0, 4e-6]\ntruncated = [-3e-5, 3e-5]",
         "parameter = [\"imbalance_y\", \"imbalance_z\"]\ncovariance = [[1e-12, 2e-13], [2e-13, 1e-12]]",
         "start = \"beta\"\nuniform = [-0.1, 0.1]",
         "start = \"phi rate\"\nlog_uniform = [50, 150]",

@@ -15,12 +15,13 @@ use crate::plan::{Source, Target};
 use crate::record::Block;
 use crate::{Keep, Keeper, Plan};
 use gyro_runner::protocol::read;
-use gyro_runner::{Approach, Settings, Start, scheduled};
+use gyro_runner::{Approach, Input, Settings, Start, scheduled};
 use nanoserde::{DeBin, SerBin};
 pub use packs::packs;
 pub use sensitive::{packs_sensitive, whole_sensitive};
-use std::io::{self, BufRead, Write};
+use std::io::{self, BufRead, BufWriter, Write};
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 pub use whole::whole;
 
 /// What is to be run: all that a program needs to know of a study.
@@ -52,9 +53,18 @@ pub struct Unit {
     /// Where their scenarios start, or why they cannot; empty where all start alike.
     #[nserde(proxy = "Starts")]
     pub starts: Vec<Result<Start, String>>,
-    /// For sensitivities the derivatives of each of these starts, those of its positions, velocities and turn
-    /// references by one direction after the other, times the direction's [scale](Plan::scale).
-    pub slopes: Vec<Vec<f64>>,
+    /// For sensitivities the derivatives of each of these starts.
+    pub slopes: Vec<StartSlopes>,
+}
+
+/// The derivatives of a start.
+#[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
+pub enum StartSlopes {
+    /// Those of its positions, velocities and turn references by one direction after the other, times the direction's
+    /// [scale](Plan::scale).
+    Of(Vec<f64>),
+    /// Why there are none.
+    Impossible(String),
 }
 
 /// As they are handed over.
@@ -120,8 +130,28 @@ impl Job {
 trait Runs {
     /// Runs scenarios that follow each other and appends what is kept of them; `starts` and `slopes` have one for each
     /// or are empty.
-    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], slopes: &[Vec<f64>]);
+    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], slopes: &[StartSlopes]);
+
+    /// Runs the blocks of a unit and tells of them in their order.
+    fn run_unit(&mut self, blocks: Blocks<'_>, unit: &Unit, tell: &mut Tell<'_>) -> io::Result<()> {
+        let (mut starts, mut slopes) = (&unit.starts[..], &unit.slopes[..]);
+        for mut block in blocks {
+            let (own, rest) = starts.split_at((block.count as usize).min(starts.len()));
+            starts = rest;
+            let (own_slopes, rest) = slopes.split_at((block.count as usize).min(slopes.len()));
+            slopes = rest;
+            self.run(&mut block, own, own_slopes);
+            tell(block)?;
+        }
+        Ok(())
+    }
 }
+
+/// Blocks without numbers: what is to be run.
+type Blocks<'a> = &'a mut dyn Iterator<Item = Block>;
+
+/// Hears of blocks that have been run.
+type Tell<'a> = dyn FnMut(Block) -> io::Result<()> + 'a;
 
 /// Reads the job, then units; answers with records.
 fn serve<R: Runs>(begin: impl FnOnce(&'static Job) -> R) -> ExitCode {
@@ -135,6 +165,9 @@ fn serve<R: Runs>(begin: impl FnOnce(&'static Job) -> R) -> ExitCode {
     }
 }
 
+/// Short blocks are handed over together: to wake a reader takes longer than a scenario.
+const SEND_EVERY: Duration = Duration::from_millis(20);
+
 fn answer<R: Runs>(
     begin: impl FnOnce(&'static Job) -> R,
     input: &mut impl BufRead,
@@ -144,19 +177,22 @@ fn answer<R: Runs>(
     // One job for the life of the program.
     let job: &'static Job = Box::leak(Box::new(job));
     let mut runs = begin(job);
+    let mut output = BufWriter::with_capacity(1 << 16, output);
     while let Some(unit) = read::<Unit>(input)? {
-        let (mut starts, mut slopes) = (&unit.starts[..], &unit.slopes[..]);
-        for block in &unit.blocks {
+        let mut blocks = unit.blocks.iter().map(|block| {
             let (first, count) = job.range(*block);
-            let (own, rest) = starts.split_at((count as usize).min(starts.len()));
-            starts = rest;
-            let (own_slopes, rest) = slopes.split_at((count as usize).min(slopes.len()));
-            slopes = rest;
-            let mut block = Block { first, count, ..Block::default() };
-            runs.run(&mut block, own, own_slopes);
+            Block { first, count, ..Block::default() }
+        });
+        let mut sent = Instant::now();
+        runs.run_unit(&mut blocks, &unit, &mut |block| {
             output.write_all(&block.encode())?;
-            output.flush()?;
-        }
+            if sent.elapsed() < SEND_EVERY {
+                return Ok(());
+            }
+            sent = Instant::now();
+            output.flush()
+        })?;
+        output.flush()?;
     }
     Ok(())
 }
@@ -168,6 +204,9 @@ struct Common {
     keeper: Keeper<'static>,
     values: Vec<f64>,
     parameters: Vec<f64>,
+    /// What varies of the inputs.
+    inputs: Vec<Input>,
+    has_inputs: bool,
 }
 
 impl Common {
@@ -178,6 +217,8 @@ impl Common {
             keeper: Keeper::new(&job.keep, job.times().len()),
             values: vec![0.0; job.plan.targets.len()],
             parameters: Vec::new(),
+            inputs: Vec::new(),
+            has_inputs: job.plan.targets.iter().any(|of| matches!(of, Target::Input(_) | Target::Table(_))),
         }
     }
 
@@ -185,6 +226,9 @@ impl Common {
     fn draw(&mut self, k: u64) {
         self.source.write(k, &mut self.values);
         self.job.write_parameters(&self.values, &mut self.parameters);
+        if self.has_inputs {
+            self.inputs = self.job.plan.inputs(&self.values);
+        }
     }
 }
 

@@ -66,7 +66,7 @@ pub struct Axis {
 impl Plan {
     /// Points of the grid; one without axes.
     pub fn grid(&self) -> u64 {
-        self.axes.iter().map(|axis| axis.rows.len() as u64).product()
+        self.axes.iter().fold(1, |points: u64, axis| points.saturating_mul(axis.rows.len() as u64))
     }
 
     /// How many scenarios there are.

@@ -49,6 +49,8 @@ pub struct Vocabulary {
     pub parameters: Vec<(String, f64)>,
     /// Inputs, likewise.
     pub inputs: Vec<(String, f64)>,
+    /// Controllers, with the indices of the inputs that they set.
+    pub controllers: Vec<(String, Vec<usize>)>,
     /// Starts, named as the columns of results: `alpha`, `alpha rate`.
     pub starts: Vec<Named<Target>>,
     /// What can be kept.
@@ -157,7 +159,7 @@ fn page<F: Files>(
         return Ok(None);
     };
     let mut kept = kept;
-    kept.sensitivities(reader, &whole, (&varied.targets, &varied.names), &run);
+    kept.sensitivities(reader, &whole, (&varied.targets, &varied.names), &run, &vocabulary);
     let plan =
         Plan { seed, sampling, targets: varied.targets, axes: varied.axes, draws: varied.draws, repeats };
     check(reader, &whole, &plan, block);

@@ -84,7 +84,7 @@ fn tables(folder: &Path, loaded: &Loaded, gathered: &mut Gathered) -> Result<Vec
     Ok(written)
 }
 
-/// A file that is written beside the one that it then replaces.
+/// A file that is written beside the one that it then replaces; what a killed sweep has left of it is written over.
 struct Replaced {
     path: PathBuf,
     beside: PathBuf,
@@ -95,7 +95,7 @@ impl Replaced {
     fn open(path: &Path) -> Result<Self, Failure> {
         write::check(path, Known::Place)?;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let beside = path.with_file_name(format!(".{name}.{}", std::process::id()));
+        let beside = path.with_file_name(format!(".{name}.part"));
         let file = File::create(&beside).map_err(|e| unwritable(&beside, "written", &e))?;
         Ok(Self { path: path.to_path_buf(), beside, file: BufWriter::new(file) })
     }

@@ -81,7 +81,7 @@ pub(super) fn slopes(page: &Model, plan: &Plan, by: &[usize], values: &[f64]) ->
             let mut values = values.to_vec();
             values[*target] += parts * APART * plan.scale(*target);
             let start = assembled(page, &plan.targets, &values)
-                .map_err(|words| format!("its sensitivities take a start nearby: {words}"))?;
+                .map_err(|words| format!("they take a start nearby: {words}"))?;
             Ok::<_, String>([start.positions, start.velocities, start.turn_references].concat())
         };
         let [far_below, below, above, far_above] =
@@ -105,6 +105,7 @@ pub(super) fn are_alike(study: &Study, scene: &Scene) -> bool {
     let is_tree = Tree::of(model).is_open() && model.couplers.is_empty() && model.drivers.is_empty();
     let is_constant = study.plan.targets.iter().all(|target| !matches!(target, Target::Table(_)));
     approach.coordinates == Coordinates::Joint
+        && model.controllers.is_empty()
         && gyro_codegen::lacks_joint_coordinates(model).is_none()
         && is_explicit
         && is_tree

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::write::unwritable;
 use gyro_sweep::record::{self, Block};
 use serde::{Deserialize, Serialize};
-use std::fs::{File, OpenOptions};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufRead, BufReader, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -108,6 +108,7 @@ impl Store {
             _ => unwritable(&path, "written", &error),
         };
         let mut file = OpenOptions::new().write(true).create_new(true).open(&path).map_err(failed)?;
+        hold(&file, &path)?;
         file.write_all(head.line().as_bytes()).map_err(failed)?;
         Ok(Self { file: BufWriter::new(file), written: 0, synced: Instant::now(), path })
     }
@@ -125,6 +126,7 @@ impl Store {
             return Self::create(folder, head);
         }
         let mut file = OpenOptions::new().read(true).write(true).open(&path).map_err(failed)?;
+        hold(&file, &path)?;
         let (found, mut input) = match read_head(&path, BufReader::new(&file)) {
             Ok(found) => found,
             // Killed within its first line: nothing is lost.
@@ -168,6 +170,17 @@ impl Store {
         }
         self.written += 1;
         Ok(())
+    }
+}
+
+/// Keeps other sweeps from the file as long as it is open, where the file system has locks.
+fn hold(file: &File, path: &Path) -> Result<(), Failure> {
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(Failure::Usage(format!(
+            "another sweep writes to {}: wait for its end, or choose another folder with --out",
+            path.display()
+        ))),
+        _ => Ok(()),
     }
 }
 
@@ -235,5 +248,42 @@ impl Blocks {
 
     fn damaged(&self, error: &io::Error) -> Failure {
         Failure::Run(format!("{} is not whole: {error}; --resume mends it", self.path.display()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_sweeps_do_not_write_to_one_file() {
+        let folder = std::env::temp_dir().join(format!("gyro-store-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let head = Head {
+            format: 1,
+            name: "s".to_owned(),
+            study: String::new(),
+            path: "s.toml".to_owned(),
+            program: String::new(),
+            job: String::new(),
+            commit: String::new(),
+            seed: 1,
+            scenarios: 2,
+            block: 1,
+            width: 1,
+            shard: [0, 1],
+        };
+        let block = |first| Block { first, count: 1, numbers: vec![0.5], errors: Vec::new() }.encode();
+        let mut store = Store::create(&folder, &head).unwrap();
+        store.append(&block(0)).unwrap();
+        let refused = Store::resume(&folder, &head).unwrap_err();
+        assert!(refused.words().contains("another sweep writes to"), "{refused:?}");
+        drop(store);
+        let mut store = Store::resume(&folder, &head).unwrap();
+        assert_eq!(store.written, 1);
+        store.append(&block(1)).unwrap();
+        drop(store);
+        assert_eq!(Store::resume(&folder, &head).unwrap().written, 2);
+        std::fs::remove_dir_all(&folder).unwrap();
     }
 }

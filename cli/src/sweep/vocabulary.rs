@@ -15,6 +15,11 @@ pub(super) fn vocabulary(model: &Model) -> Vocabulary {
     let mut words = Vocabulary {
         parameters: valued(&model.parameters),
         inputs: valued(&model.inputs),
+        controllers: model
+            .controllers
+            .iter()
+            .map(|controller| (controller.name.clone(), controller.inputs.clone()))
+            .collect(),
         ..Vocabulary::default()
     };
     for (index, shown) in coordinates(model).iter().enumerate() {

@@ -6,7 +6,7 @@ use gyro_model::Model;
 use gyro_runner::Start;
 use gyro_runner::protocol::write;
 use gyro_sweep::Source;
-use gyro_sweep::child::{Job, Unit};
+use gyro_sweep::child::{Job, StartSlopes, Unit};
 use gyro_sweep::record;
 use std::collections::BTreeMap;
 use std::io::BufReader;
@@ -146,11 +146,15 @@ impl Workers<'_> {
             let fitting = (UNIT / each) as u64;
             at_once = fitting.clamp(1, AHEAD / 4);
         }
-        Ok(())
+        worker.close()
     }
 
     /// Where the scenarios of these blocks start, unless all start alike; for sensitivities with derivatives.
-    fn starts(&self, blocks: &[u64], source: &mut Source<'_>) -> (Vec<Result<Start, String>>, Vec<Vec<f64>>) {
+    fn starts(
+        &self,
+        blocks: &[u64],
+        source: &mut Source<'_>,
+    ) -> (Vec<Result<Start, String>>, Vec<StartSlopes>) {
         let Some(model) = self.assembled else { return Default::default() };
         let (plan, by) = (&self.job.plan, &self.job.keep.by);
         let scenarios = blocks.iter().flat_map(|block| {
@@ -158,14 +162,14 @@ impl Workers<'_> {
             first..first + u64::from(count)
         });
         let mut values = vec![0.0; plan.targets.len()];
-        let mut start = |k| {
+        let both = scenarios.map(|k| {
             source.write(k, &mut values);
-            let start = starts::assembled(model, &plan.targets, &values)?;
-            Ok((start, starts::slopes(model, plan, by, &values)?))
-        };
-        let both = scenarios.map(|k| match start(k) {
-            Ok((start, slopes)) => (Ok(start), slopes),
-            Err(words) => (Err(words), Vec::new()),
+            let start = starts::assembled(model, &plan.targets, &values);
+            let slopes = match &start {
+                Ok(_) => starts::slopes(model, plan, by, &values),
+                Err(words) => Err(words.clone()),
+            };
+            (start, slopes.map_or_else(StartSlopes::Impossible, StartSlopes::Of))
         });
         both.unzip()
     }
@@ -209,7 +213,8 @@ pub(super) fn in_order(
 #[derive(Debug)]
 struct Worker {
     child: Child,
-    input: ChildStdin,
+    /// None once there is nothing more to ask.
+    input: Option<ChildStdin>,
     output: BufReader<ChildStdout>,
 }
 
@@ -218,16 +223,24 @@ impl Worker {
         let failed = |error: std::io::Error| Failure::Run(format!("{}: {error}", program.display()));
         let mut command = Command::new(program);
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(failed)?;
-        let input = child.stdin.take().expect("standard input is piped");
+        let mut input = child.stdin.take().expect("standard input is piped");
         let output =
             BufReader::with_capacity(1 << 16, child.stdout.take().expect("standard output is piped"));
-        let mut worker = Self { child, input, output };
-        write(&mut worker.input, job).map_err(failed)?;
+        let written = write(&mut input, job);
+        let worker = Self { child, input: Some(input), output };
+        written.map_err(failed)?;
         Ok(worker)
     }
 
     fn ask(&mut self, unit: &Unit) -> Result<(), Failure> {
-        write(&mut self.input, unit).map_err(|error| self.ended(&error.to_string()))
+        let input = self.input.as_mut().expect("it is taken when the worker is closed");
+        write(input, unit).map_err(|error| self.ended(&error.to_string()))
+    }
+
+    /// Lets the program end: it does when its input ends.
+    fn close(mut self) -> Result<(), Failure> {
+        drop(self.input.take());
+        self.child.wait().map(|_| ()).map_err(|error| self.ended(&error.to_string()))
     }
 
     fn hear(&mut self) -> Result<Vec<u8>, Failure> {

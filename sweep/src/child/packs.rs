@@ -5,11 +5,13 @@
 mod adaptive;
 
 use super::joint::Layout;
-use super::{Common, Job, Runs, note, serve};
+use super::{Blocks, Common, Job, Runs, StartSlopes, Tell, Unit, note, serve};
+use crate::Keeper;
 use crate::record::Block;
 use gyro_runner::{Approach, Integrator, Schedule, Start, describe_in, scheduled};
 use gyro_sim::lanes::{Direct, Lanes, f64x8};
 use gyro_sim::{Dop853, Error, Joint, JointSpace, Scalar, Tsit5};
+use std::io;
 use std::process::ExitCode;
 
 /// Scenarios in a pack.
@@ -39,7 +41,8 @@ where
 {
     let layout = Layout::new(&one(&job.parameters), job);
     let (common, times) = (Common::new(job), job.times());
-    Packs { common, layout, times, x: Vec::new(), samples: Vec::new(), one, many, check }
+    let keepers = vec![Keeper::new(&job.keep, times.len()); LANES];
+    Packs { common, layout, times, x: Vec::new(), samples: Vec::new(), keepers, one, many, check }
 }
 
 struct Packs<F, G, C> {
@@ -50,6 +53,8 @@ struct Packs<F, G, C> {
     x: Vec<f64>,
     /// The kept quantities, sample after sample.
     samples: Vec<f64x8>,
+    /// For scenarios under error control, one for each lane.
+    keepers: Vec<Keeper<'static>>,
     one: F,
     many: G,
     check: C,
@@ -63,18 +68,32 @@ where
     G: Fn(&[f64x8]) -> P,
     C: Fn(&[f64]) -> Result<(), String>,
 {
-    fn run(&mut self, block: &mut Block, _: &[Result<Start, String>], _: &[Vec<f64>]) {
+    fn run(&mut self, block: &mut Block, _: &[Result<Start, String>], _: &[StartSlopes]) {
+        let own = std::mem::take(block);
+        let tell = &mut |done| {
+            *block = done;
+            Ok(())
+        };
+        self.run_unit(&mut std::iter::once(own), &Unit::default(), tell).expect("it is only put back");
+    }
+
+    fn run_unit(&mut self, blocks: Blocks<'_>, _: &Unit, tell: &mut Tell<'_>) -> io::Result<()> {
         let Approach { tolerance, integrator, .. } = self.common.job.approach;
-        if tolerance.is_none() {
+        if tolerance.is_some() && integrator == Integrator::Tsit5 {
+            return self.run_lanes::<_, Tsit5<M::Joints>>(blocks, tell, Tsit5::new);
+        }
+        if tolerance.is_some() {
+            return self.run_lanes::<_, Dop853<M::Joints, f64>>(blocks, tell, Dop853::new);
+        }
+        for mut block in blocks {
             let lanes = LANES as u32;
             for row in (0..block.count).step_by(LANES) {
-                self.run_pack(block, row, (block.count - row).min(lanes));
+                let count = (block.count - row).min(lanes);
+                self.run_pack(&mut block, row, count);
             }
-        } else if integrator == Integrator::Tsit5 {
-            self.run_lanes::<_, Tsit5<M::Joints>>(block, Tsit5::new);
-        } else {
-            self.run_lanes::<_, Dop853<M::Joints, f64>>(block, Dop853::new);
+            tell(block)?;
         }
+        Ok(())
     }
 }
 
@@ -88,7 +107,7 @@ where
 {
     /// Steps of fixed length; lanes that no scenario fills repeat the last one.
     fn run_pack(&mut self, block: &mut Block, row: u32, count: u32) {
-        let Self { common, layout, times, x, samples, one, many, check } = self;
+        let Self { common, layout, times, x, samples, one, many, check, .. } = self;
         let job = common.job;
         let mut parameters = vec![f64x8::constant(0.0); job.parameters.len()];
         let mut lanes: Vec<Vec<f64>> = Vec::with_capacity(LANES);
@@ -105,7 +124,7 @@ where
             }
             layout.write_start(&common.values, x);
             lanes.push(x.clone());
-            inputs.push(job.plan.inputs(&common.values));
+            inputs.push(common.inputs.clone());
         }
         let mut mechanism = many(&parameters);
         for input in &job.start.inputs {

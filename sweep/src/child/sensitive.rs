@@ -3,7 +3,7 @@
 use super::joint::{Layout, flat, joint_start, write_start};
 use super::variational::{Closing, Number, Part, Parts, Variational};
 use super::watch::Watch;
-use super::{Common, Job, Runs, note, packs, serve, whole};
+use super::{Common, Job, Runs, StartSlopes, note, packs, serve, whole};
 use crate::Keep;
 use crate::plan::Target;
 use crate::record::Block;
@@ -83,7 +83,7 @@ where
     F: Fn(&[f64]) -> M,
     G: Fn(&[Number]) -> D,
 {
-    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], slopes: &[Vec<f64>]) {
+    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], slopes: &[StartSlopes]) {
         let keep = &self.common.job.keep;
         self.inner.run(block, starts, slopes);
         let rows = std::mem::take(&mut block.numbers);
@@ -119,18 +119,20 @@ where
     G: Fn(&[Number]) -> D,
 {
     /// Runs one, from an assembled start and its derivatives or from the one that all have.
-    fn scenario(&mut self, start: Option<(&Start, &Vec<f64>)>) -> Result<(), String> {
+    fn scenario(&mut self, start: Option<(&Start, &StartSlopes)>) -> Result<(), String> {
         let job = self.common.job;
         let mut mechanism = (self.one)(&self.common.parameters);
-        let inputs: Vec<Input> =
-            job.start.inputs.iter().cloned().chain(job.plan.inputs(&self.common.values)).collect();
+        let inputs: Vec<Input> = job.start.inputs.iter().chain(&self.common.inputs).cloned().collect();
         for input in &inputs {
             mechanism.set_input(input.index, input.at(0.0));
         }
         let n_parts = self.scales.len().div_ceil(COLUMNS);
         let parts = Rc::new((0..n_parts).map(|k| self.part(k, &inputs)).collect::<Vec<_>>());
         let (state, angles) = match start {
-            Some((start, slopes)) => (assembled(&mechanism, &parts, start, slopes), start.angles.clone()),
+            Some((_, StartSlopes::Impossible(words))) => return Err(words.clone()),
+            Some((start, StartSlopes::Of(slopes))) => {
+                (assembled(&mechanism, &parts, start, slopes), start.angles.clone())
+            }
             None => self.alike(&mechanism),
         };
         let closing = Closing::new(&mechanism, parts.clone());

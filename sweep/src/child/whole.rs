@@ -1,6 +1,6 @@
 //! Scenarios as whole runs, as `simulate` makes them.
 
-use super::{Common, Job, Runs, note, serve};
+use super::{Common, Job, Runs, StartSlopes, note, serve};
 use crate::keep::Keeper;
 use crate::record::Block;
 use gyro_runner::motion::MotionBuilder;
@@ -36,7 +36,7 @@ where
     K: MotionBuilder<M>,
     B: Fn(&[f64]) -> (M, K),
 {
-    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], _: &[Vec<f64>]) {
+    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], _: &[StartSlopes]) {
         let common = &mut self.common;
         for row in 0..block.count {
             common.draw(block.first + u64::from(row));
@@ -59,9 +59,9 @@ where
     M: Partition<Scalar: Real> + Clone + 'static,
     K: MotionBuilder<M>,
 {
-    let Common { job, keeper, values, parameters, .. } = common;
+    let Common { job, keeper, parameters, inputs: varied, .. } = common;
     let mut inputs = job.start.inputs.clone();
-    inputs.extend(job.plan.inputs(values));
+    inputs.extend_from_slice(varied);
     let start = Start { inputs, ..start };
     let run = || {
         let (mut mechanism, builder) = build(parameters);

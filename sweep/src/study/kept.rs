@@ -64,6 +64,7 @@ impl Kept {
         whole: &Section<'_>,
         (targets, names): (&[Target], &[(String, String)]),
         run: &RunOptions,
+        vocabulary: &Vocabulary,
     ) {
         let Some(keep) = whole.get("keep").and_then(|item| item.section(reader, "[keep]", &KEYS)) else {
             return;
@@ -86,6 +87,13 @@ impl Kept {
         } else if is_rounding {
             let help = "keep `constraint violation` as a series";
             Some(["a constraint's violation is rounding", "it has no derivatives", help])
+        } else if !vocabulary.controllers.is_empty() {
+            let help = "remove this, or take [[controller]] out of the model file";
+            Some([
+                "there are no derivatives of loops that sampled controllers close",
+                "of a closed loop",
+                help,
+            ])
         } else if run.coordinates != Coordinates::Joint {
             let help = "write run = { coordinates = \"joint\" }";
             Some(["sensitivities are computed in joint coordinates", "in maximal ones", help])

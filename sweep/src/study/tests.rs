@@ -1,5 +1,7 @@
 //! Good studies and bad ones.
 
+mod random;
+
 use super::*;
 use crate::{Distribution, Draw};
 use gyro_runner::Between;
@@ -10,14 +12,15 @@ impl Files for Bench {
     type Error = String;
 
     fn model(&mut self, path: &str) -> Result<Vocabulary, String> {
-        if path != "m.toml" {
+        if !["m.toml", "closed.toml"].contains(&path) {
             return Err(format!("no {path}"));
         }
         let named = |name: &str, of| Named { name: name.to_owned(), unit: "rad".to_owned(), of };
         let start = Named { name: "hinge".to_owned(), unit: "rad".to_owned(), of: Target::Start(0, 0) };
         Ok(Vocabulary {
             parameters: vec![("mass".to_owned(), 2.0), ("length".to_owned(), 0.5)],
-            inputs: vec![("motor".to_owned(), 0.0)],
+            inputs: vec![("motor".to_owned(), 0.0), ("brake".to_owned(), 0.0)],
+            controllers: if path == "closed.toml" { vec![("hold".to_owned(), vec![1])] } else { Vec::new() },
             starts: vec![start],
             columns: vec![named("hinge", Quantity::Position(0)), named("hinge rate", Quantity::Rate(0))],
         })
@@ -168,6 +171,13 @@ fn mistakes_name_their_line_and_the_cure() {
         (sensitive("", "uniform = [0, 1]").replace("final", "series"), "s.toml:4", "write final, extremes"),
         (sensitive("", "").replace("{ parameter = \"mass\",  }", ""), "s.toml:4", "nothing varies"),
         (sensitive("", "uniform = [0, 1]").replace("true", "1"), "s.toml:4", "true or false"),
+        (sensitive("", "uniform = [0, 1]").replace("m.toml", "closed.toml"), "s.toml:4", "controllers close"),
+        (
+            format!("{HEAD}{KEEP}vary = [{{ input = \"brake\", values = [1] }}]")
+                .replace("m.toml", "closed.toml"),
+            "s.toml:5",
+            "the controller `hold` sets this input",
+        ),
     ] {
         let Err(Unreadable::Study(mistakes)) = read("s.toml", &text, &mut Bench) else {
             panic!("no mistake in\n{text}")

@@ -241,6 +241,16 @@ fn find(
             start.map(|start| (start.of.clone(), start.unit.clone(), None))
         }
     };
+    let set = found.as_ref().and_then(|(target, ..)| {
+        let Target::Input(index) = target else { return None };
+        vocabulary.controllers.iter().find(|(_, inputs)| inputs.contains(index))
+    });
+    if let Some((controller, _)) = set {
+        let message = format!("the controller `{controller}` sets this input");
+        let help = "vary a parameter that the controller's gains or set points are written with";
+        reader.wrong(span, [&message, "set already", help]);
+        return None;
+    }
     if found.is_none() {
         let known: Vec<&str> = match key {
             "parameter" => vocabulary.parameters.iter().map(|(name, _)| name.as_str()).collect(),

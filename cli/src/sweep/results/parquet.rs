@@ -13,7 +13,7 @@ use parquet::errors::Result;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::types::{Type, TypePtr};
+use parquet::schema::types::{ColumnPath, Type, TypePtr};
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -134,9 +134,12 @@ fn writer(
         ("program", &head.program),
     ];
     let noted = noted.map(|(key, value)| KeyValue::new(key.to_owned(), value.clone())).to_vec();
-    let properties = WriterProperties::builder()
-        .set_created_by("gyro-sim".to_owned())
-        .set_key_value_metadata(Some(noted))
-        .build();
+    // Numbers that are drawn or computed are all different; those of a grid, and errors, are not.
+    let grid = loaded.study.plan.axes.iter().flat_map(|axis| &axis.targets).map(|target| &names[*target][..]);
+    let repeated = grid.chain(["error"]).map(|name| ColumnPath::new(vec![name.to_owned()]));
+    let properties = WriterProperties::builder().set_dictionary_enabled(false);
+    let properties = repeated.fold(properties, |all, column| all.set_column_dictionary_enabled(column, true));
+    let properties =
+        properties.set_created_by("gyro-sim".to_owned()).set_key_value_metadata(Some(noted)).build();
     SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties))
 }

@@ -31,7 +31,8 @@ pub(super) fn row(out: &mut impl Write, k: u64, numbers: [&[f64]; 2], error: Opt
 }
 
 fn cell(out: &mut impl Write, number: f64) -> io::Result<()> {
-    if number.is_nan() { write!(out, ",") } else { write!(out, ",{number:?}") }
+    out.write_all(b",")?;
+    if number.is_nan() { Ok(()) } else { out.write_all(ryu::Buffer::new().format(number).as_bytes()) }
 }
 
 fn quoted(text: &str) -> String {

@@ -1,6 +1,7 @@
 //! Derivatives against differences of runs that know nothing of dual numbers.
 
 use super::*;
+use crate::child::StartSlopes;
 use crate::child::sensitive::{Sensitive, plain};
 use crate::child::variational::Number;
 
@@ -169,9 +170,12 @@ fn whole_runs_have_the_derivatives_of_packs() {
     let unit = Unit {
         blocks: vec![0],
         starts: rows.iter().map(|row| Ok(of_row(row))).collect(),
-        slopes: vec![slopes; 2],
+        slopes: vec![StartSlopes::Of(slopes); 2],
     };
     let whole = sensitive(&job, &unit, false);
+    let nearby = StartSlopes::Impossible("no start\nnearby".to_owned());
+    let slopes = vec![nearby, unit.slopes[1].clone()];
+    let without = sensitive(&job, &Unit { slopes, ..unit.clone() }, false);
     assert!(packed.errors.is_empty() && whole.errors.is_empty(), "{packed:?} {whole:?}");
     let n = job.keep.numbers();
     for ((_, one, _), (_, other, _)) in packed.rows().zip(whole.rows()) {
@@ -181,28 +185,42 @@ fn whole_runs_have_the_derivatives_of_packs() {
             assert!(one.is_nan() && other.is_nan() || distance.abs() < 1e-9, "{place}: {one} {other}");
         }
     }
+    // Without derivatives of its start a scenario keeps its numbers; the next one is as it was.
+    assert_eq!(without.errors, [(0, "its sensitivities: no start nearby".to_owned())]);
+    let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    let [(_, one, _), (_, next, _)] = without.rows().collect::<Vec<_>>()[..] else { panic!("two scenarios") };
+    let (all, width) = (&whole.numbers, one.len());
+    assert_eq!(bits(&one[..n]), bits(&all[..n]));
+    assert!(one[n..].iter().all(|slope| slope.is_nan()));
+    assert_eq!(bits(next), bits(&all[width..]));
 }
 
-/// A scenario of which only the derivatives fail is a row with an error that says so, and keeps its numbers.
+/// A scenario of which only the derivatives fail is a row with an error that says so, and keeps its numbers: here those
+/// of the first, which are computed in units of the largest start and so are beyond all numbers.
 #[test]
 fn derivatives_that_fail_are_named() {
-    let axes = vec![Axis { targets: vec![0], rows: vec![vec![1e-4], vec![-1e-4]] }];
-    let targets = vec![Target::Parameter(0)];
+    let axes = vec![Axis { targets: vec![0], rows: vec![vec![0.1], vec![1.7e308]] }];
+    let targets = vec![Target::StartRate(0, 0)];
     let plan = Plan { seed: 1, sampling: Sampling::Random, targets, axes, draws: Vec::new(), repeats: 1 };
-    let settings = Settings { t_end: 0.01, step: 1e-3, correct_every: None, sample_every: 0.01 };
-    let approach = Approach {
-        coordinates: Coordinates::Joint,
-        integrator: Integrator::Tsit5,
-        tolerance: Some(1e-5),
-        budget: Some(6),
-        ..Approach::default()
-    };
-    let keep = Keep { by: vec![0], ..keep(1.0) };
-    let (parameters, start) = (nominal(), start([0.000_125, 0.0, 0.0]));
-    let job = Job { plan, keep, settings, approach, parameters, start, block: 2, measure: None };
-    let found = sensitive(&job, &Unit { blocks: vec![0], ..Unit::default() }, true);
-    let rows: Vec<_> = found.rows().collect();
-    assert_eq!(rows[1].2, Some("no"));
-    let numbers = job.keep.numbers();
-    assert!(rows[1].1[numbers..numbers + 2].iter().all(|x| x.is_nan()));
+    let settings = Settings { t_end: 0.05, step: 1e-3, correct_every: None, sample_every: 0.05 };
+    for integrator in [Integrator::Rk4, Integrator::Tsit5, Integrator::Dop853] {
+        let tolerance = (integrator != Integrator::Rk4).then_some(1e-9);
+        let approach =
+            Approach { coordinates: Coordinates::Joint, integrator, tolerance, ..Approach::default() };
+        let keep = Keep { by: vec![0], ..keep(1.0) };
+        let (parameters, start) = (nominal(), start([0.000_125, 0.0, 0.0]));
+        let plan = plan.clone();
+        let job = Job { plan, keep, settings, approach, parameters, start, block: 2, measure: None };
+        let found = sensitive(&job, &Unit { blocks: vec![0], ..Unit::default() }, true);
+        let [(_, kept, error), (_, failed, other)] = found.rows().collect::<Vec<_>>()[..] else {
+            panic!("{found:?}")
+        };
+        assert!(error.is_some_and(|words| words.starts_with("its sensitivities: at t = ")), "{error:?}");
+        assert!(other.is_some_and(|words| words.starts_with("at t = ")), "{other:?}");
+        let (numbers, all) = (job.keep.numbers(), job.keep.numbers() + job.keep.slopes());
+        let plain = self::numbers(&job, vec![vec![0.1]]);
+        let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&kept[..numbers]), bits(&plain[0][..numbers]));
+        assert!(kept[numbers..all].iter().chain(&failed[..all]).all(|x| x.is_nan()), "{found:?}");
+    }
 }
