@@ -10,7 +10,7 @@ use crate::runs::Runs;
 use crate::scene::{self, Scene};
 use crate::verdict::{self, Outcome};
 use crate::verify::proved;
-use crate::{Cli, Command, files, json, linearization, remarks, simulate, summary, urdf};
+use crate::{Cli, Command, batches, files, json, linearization, remarks, simulate, summary, urdf};
 use clap::Parser;
 use gyro_codegen::{Effort, Functions};
 use gyro_jit::Compiled;
@@ -21,7 +21,7 @@ use gyro_sim::JointPlace;
 use gyro_verifier::Depth;
 use serde_json::{Value, json};
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 pub use crate::columns::{Column, Shown, coordinates};
@@ -291,6 +291,20 @@ pub fn text(model: &Model, linear: &Linear) -> String {
 pub fn generate(file: &str, model: &Model) -> Result<String, Failure> {
     let module = gyro_codegen::generate_model(file, model).map_err(|e| Failure::Usage(e.to_string()))?;
     Ok(proved(model, module)?.code)
+}
+
+/// Has cargo compile these functions for many states at a time, for this very processor if that is asked for; returns
+/// the library, which has the functions `gyro_accelerations` and `gyro_advance`.
+///
+/// # Errors
+/// The model has none, cargo is missing, or the proof refutes it.
+pub fn batches(
+    file: &str,
+    model: &Model,
+    functions: &Functions,
+    is_native: bool,
+) -> Result<PathBuf, Failure> {
+    batches::compiled(file, model, functions, is_native)
 }
 
 /// The proof of all functions of a model, as `verify` has it: whether all is proved, its text and its object.

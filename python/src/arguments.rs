@@ -1,8 +1,8 @@
 //! Arrays of numpy as arguments and results.
 
-use crate::batch::Inputs;
 use crate::dynamics::Dynamics;
 use crate::errors;
+use gyro_runner::batch::Inputs;
 use numpy::{PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 

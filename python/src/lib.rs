@@ -2,6 +2,7 @@
 
 mod arguments;
 mod batch;
+mod compiled;
 mod dynamics;
 mod errors;
 mod linear;

@@ -1,9 +1,11 @@
 //! Steps in a loop.
 
 use crate::arguments::{doubles, result, rows, slice};
-use crate::dynamics::{Dynamics, Pair};
+use crate::batch::{Many, PACK};
+use crate::dynamics::Dynamics;
 use crate::errors;
 use gyro_jit::{Compiled, NotCompiled};
+use gyro_runner::batch::Inputs;
 use gyro_runner::describe_in;
 use gyro_sim::{CloseLoops, Error, Joint, JointSpace, Rk4};
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
@@ -30,6 +32,8 @@ struct Steps {
     rows: Option<usize>,
     /// Of each state (x, u), and the work where there is some.
     states: Vec<Vec<f64>>,
+    /// The inputs of each state, if they are not the same for all.
+    own: Option<Vec<f64>>,
     threads: Vec<Thread>,
 }
 
@@ -39,8 +43,8 @@ struct Thread {
     dynamics: Dynamics,
     method: Rk4<Vec<f64>>,
     loops: CloseLoops<Compiled<f64>>,
-    /// For many states of a mechanism without loops, two at a time.
-    pair: Option<Pair>,
+    /// For many states of a mechanism without loops, with these row after row.
+    many: Option<(Many, Vec<f64>)>,
 }
 
 /// Fewer states than these are not worth another thread.
@@ -50,11 +54,6 @@ const SHARE: usize = 64;
 type Steppings = ((f64, f64), Range<u64>);
 
 impl Thread {
-    fn set_inputs(&mut self, inputs: &[f64]) {
-        self.dynamics.set_inputs(inputs);
-        self.pair.iter_mut().for_each(|pair| pair.set_inputs([inputs; 2]));
-    }
-
     /// All states by some steps; `own` has the inputs of each, if they are not the same for all.
     fn advance(
         &mut self,
@@ -63,22 +62,21 @@ impl Thread {
         own: Option<&[f64]>,
     ) -> Result<(), Error> {
         let n_inputs = self.dynamics.defaults.len();
-        let inputs_of = |row: usize| own.map(|own| &own[row * n_inputs..][..n_inputs]);
-        let (pairs, rest) = match self.pair {
-            Some(_) => states.as_chunks_mut::<2>(),
-            None => (&mut [][..], states),
-        };
-        let n_paired = 2 * pairs.len();
-        for (k, [a, b]) in pairs.iter_mut().enumerate() {
-            let Some(pair) = &mut self.pair else { break };
-            if let (Some(a), Some(b)) = (inputs_of(2 * k), inputs_of(2 * k + 1)) {
-                pair.set_inputs([a, b]);
-            }
-            pair.advance(steps.0, steps.1.clone(), [a, b]);
+        if let Some((many, rows)) = &mut self.many {
+            let n = (self.dynamics.n_x + self.dynamics.n_u).max(1);
+            rows.resize(states.len() * n, 0.0);
+            rows.chunks_exact_mut(n).zip(&*states).for_each(|(to, from)| to.copy_from_slice(&from[..n]));
+            let inputs = match own {
+                Some(own) => Inputs::Own(own).of(0..states.len(), n_inputs),
+                None => Inputs::Same(self.dynamics.inputs()),
+            };
+            many.advance(steps.0, &steps.1, inputs, rows);
+            states.iter_mut().zip(rows.chunks_exact(n)).for_each(|(to, from)| to[..n].copy_from_slice(from));
+            return Ok(());
         }
-        for (k, x) in rest.iter_mut().enumerate() {
-            if let Some(inputs) = inputs_of(n_paired + k) {
-                self.dynamics.set_inputs(inputs);
+        for (row, x) in states.iter_mut().enumerate() {
+            if let Some(own) = own {
+                self.dynamics.set_inputs(&own[row * n_inputs..][..n_inputs]);
             }
             self.advance_one(steps, x)?;
         }
@@ -100,23 +98,37 @@ impl Thread {
 impl Stepper {
     pub(crate) fn new(
         dynamics: &Dynamics,
-        dt: f64,
-        substeps: u32,
+        (dt, substeps): (f64, u32),
         (rows, states): (Option<usize>, &[f64]),
+        by_cargo: Option<Many>,
     ) -> Result<Self, NotCompiled> {
         let n_state = dynamics.n_x + dynamics.n_u;
         let states: Vec<_> = states.chunks(n_state.max(1)).map(|state| dynamics.whole(state)).collect();
         let is_tree = dynamics.mechanism.joint_layout().closure_rows.is_empty();
+        let many = match by_cargo {
+            _ if !is_tree || states.len() < 2 => None,
+            None => Some(Many::in_process(dynamics)?),
+            by_cargo => by_cargo,
+        };
         let thread = Thread {
-            pair: (is_tree && states.len() > 1).then(|| Pair::of(dynamics)).transpose()?,
+            many: many.map(|many| (many, Vec::new())),
             method: Rk4::new(&dynamics.mechanism.joint_start()),
             loops: CloseLoops::new(&dynamics.mechanism),
             dynamics: dynamics.clone(),
         };
         let n_threads = states.len().div_ceil(SHARE).clamp(1, rayon::current_num_threads());
         let threads = vec![thread; n_threads];
-        let steps =
-            Steps { dt, substeps: substeps.max(1), done: 0, from: 0.0, n_state, rows, states, threads };
+        let steps = Steps {
+            dt,
+            substeps: substeps.max(1),
+            done: 0,
+            from: 0.0,
+            n_state,
+            rows,
+            states,
+            own: None,
+            threads,
+        };
         Ok(Self(Mutex::new(steps)))
     }
 }
@@ -127,17 +139,18 @@ impl Steps {
         self.from + self.done as f64 * (self.dt / f64::from(self.substeps))
     }
 
-    /// Advances all states; `own` has the inputs of each, if they are not the same for all.
-    fn step(&mut self, own: Option<&[f64]>) -> Result<(), Error> {
+    /// Advances all states.
+    fn step(&mut self) -> Result<(), Error> {
         let h = self.dt / f64::from(self.substeps);
         let end = self.done + u64::from(self.substeps);
         let steps = ((self.from, h), self.done..end);
         let n_inputs = self.threads[0].dynamics.defaults.len();
+        let own = self.own.as_deref();
         if let [thread] = &mut self.threads[..] {
             thread.advance(&steps, &mut self.states, own)?;
         } else {
-            // Even, so that pairs do not straddle.
-            let share = self.states.len().div_ceil(self.threads.len()).next_multiple_of(2).max(2);
+            // Whole packs, so that none straddles.
+            let share = self.states.len().div_ceil(self.threads.len()).next_multiple_of(PACK).max(PACK);
             let parts = self.states.par_chunks_mut(share).zip(self.threads.par_iter_mut());
             parts.enumerate().try_for_each(|(part, (states, thread))| {
                 thread.advance(&steps, states, own.map(|own| &own[part * share * n_inputs..]))
@@ -167,26 +180,23 @@ impl Steps {
         Ok(out)
     }
 
-    /// Sets the inputs that are the same for all; gives those of each state otherwise.
-    fn set_inputs<'a>(
-        &mut self,
-        py: Python<'_>,
-        inputs: &'a PyReadonlyArrayDyn<'_, f64>,
-    ) -> PyResult<Option<&'a [f64]>> {
+    /// Sets the inputs: the same for all, or those of each state.
+    fn set_inputs(&mut self, py: Python<'_>, inputs: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<()> {
         let n_inputs = self.threads[0].dynamics.defaults.len();
         let values = slice(inputs);
-        match rows(py, "inputs", inputs.shape(), n_inputs)? {
+        self.own = match rows(py, "inputs", inputs.shape(), n_inputs)? {
             None => {
-                self.threads.iter_mut().for_each(|thread| thread.set_inputs(values));
-                Ok(None)
+                self.threads.iter_mut().for_each(|thread| thread.dynamics.set_inputs(values));
+                None
             }
-            found if found == self.rows => Ok(Some(values)),
+            found if found == self.rows => Some(values.to_vec()),
             found => {
                 let words =
                     format!("inputs have {} rows: one for each state was expected", found.unwrap_or(1));
-                Err(errors::request(py, &words))
+                return Err(errors::request(py, &words));
             }
-        }
+        };
+        Ok(())
     }
 }
 
@@ -205,15 +215,14 @@ impl Stepper {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let inputs = inputs.map(doubles).transpose()?;
         let mut steps = self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
-        let own = match &inputs {
-            Some(inputs) => steps.set_inputs(py, inputs)?,
-            None => None,
-        };
+        if let Some(inputs) = &inputs {
+            steps.set_inputs(py, inputs)?;
+        }
         let stepped = match steps.rows {
-            None => steps.step(own),
+            None => steps.step(),
             Some(_) => {
                 let steps = &mut *steps;
-                py.detach(|| steps.step(own))
+                py.detach(|| steps.step())
             }
         };
         stepped.map_err(|error| {
@@ -262,9 +271,9 @@ impl Stepper {
         steps.states.iter_mut().zip(numbers).for_each(|(state, from)| state[..n_state].copy_from_slice(from));
         for thread in &mut steps.threads {
             let defaults = thread.dynamics.defaults.clone();
-            thread.set_inputs(&defaults);
+            thread.dynamics.set_inputs(&defaults);
         }
-        (steps.from, steps.done) = (t, 0);
+        (steps.own, steps.from, steps.done) = (None, t, 0);
         Ok(())
     }
 }

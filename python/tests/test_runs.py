@@ -110,6 +110,17 @@ def test_ctrl_c_stops_a_run(pendulum):
     assert time.monotonic() - began < 5
 
 
+@pytest.mark.filterwarnings("ignore::gyro_sim.RunWarning")
+def test_ctrl_c_stops_while_equations_are_derived():
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    platform = gyro.load(MODELS / "stewart-platform.toml")
+    threading.Timer(0.05, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    began = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        platform.verify()
+    assert time.monotonic() - began < 5
+
+
 def test_other_threads_go_on_during_a_run(pendulum):
     count, done = 0, threading.Event()
     pendulum.simulate(0.1, step=1e-3)

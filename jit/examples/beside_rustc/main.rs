@@ -1,6 +1,6 @@
 //! Mechanisms compiled in the process beside the same ones compiled by rustc, many to one program: `beside_rustc
-//! [--time] [FILE...] [FIRST_SEED COUNT]`. All functions and short runs must have the same bits; with `--time` it says
-//! what a call takes. The model files of seeds are random ones.
+//! [--time] [FILE...] [FIRST_SEED COUNT]`. All functions and short runs must have the same bits, and what Cranelift is
+//! given must be what the module says; with `--time` it says what a call takes. The model files of seeds are random ones.
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
 use gyro_codegen::{Functions, Module};
@@ -115,6 +115,7 @@ fn manifest(root: &Path, is_timed: bool) -> String {
         library("gyro-jit", "jit"),
         library("gyro-model", "model"),
         library("gyro-pages", "tests/pages"),
+        library("gyro-verifier", "verifier"),
     ];
     format!(
         "[package]\nname = \"beside-rustc\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n[dependencies]\n{}\

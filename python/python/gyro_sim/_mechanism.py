@@ -160,6 +160,18 @@ class Mechanism(_native.Mechanism):
         """
         return self._steps(dt, self.start() if state is None else state, substeps)
 
+    def compile(self, *, native: bool = True) -> None:
+        """Has cargo compile what computes many states at once: from then on batches of `joint_accelerations`, and steppers
+        of many states of a mechanism without loops that are made from then on, compute eight states at a time.
+
+        native: with all instructions of this processor, fused multiplications among them, which round once: results of
+            batches then differ from those of single states by rounding. Without, they are the same bits.
+
+        It needs a Rust toolchain, takes seconds, and is kept in the user's cache. Whatever this library computes, it
+        computes without it too. Raises RunError if there is no cargo.
+        """
+        self._compile(native)
+
     def sensitivities(
         self,
         times: ArrayLike,
