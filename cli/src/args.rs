@@ -14,7 +14,7 @@ use std::path::PathBuf;
 pub(crate) use begin::{CheckArgs, NewArgs, SchemaArgs, Template};
 pub(crate) use export::{CArgs, CosimulationMethod, ExportArgs, FmuArgs, Target, WasmArgs};
 pub(crate) use show::{Change, ShowArgs};
-pub(crate) use simulate::{Effort, Engine, InputSetting, Precision, SimulateArgs};
+pub(crate) use simulate::{Effort, Engine, InputSetting, Precision, SimulateArgs, table};
 pub(crate) use sweep::{MergeArgs, Shard, SweepArgs, SweepCommand};
 
 /// The exit codes of every command.

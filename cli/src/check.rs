@@ -6,7 +6,7 @@ use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::words::{count, listed, number};
 use crate::write::{self, Known};
-use crate::{columns, remarks, scene};
+use crate::{columns, controllers, remarks, scene};
 use gyro_codegen::{Functions, Group, lacks_joint_coordinates};
 use gyro_model::{Attachment, Body, Link, Model, Number, Start, Support, Tree};
 use std::fmt::Write as _;
@@ -178,6 +178,7 @@ fn numbers(model: &Model) -> String {
             let _ = writeln!(text, "{what} {} = {value}", parameter.name);
         }
     }
+    text += &controllers::text(model);
     for derived in &model.derived_parameters {
         let value = number(model.value(&derived.number), DIGITS);
         let _ = writeln!(text, "computed {} = {} = {value}", derived.name, derived.text);

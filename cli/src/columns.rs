@@ -4,7 +4,7 @@ use crate::scene::observed;
 use gyro_model::{
     CoordinateKind, ForceKind, JointCoordinate, JointKind, Model, Number, Output, OutputKind, Parameter,
 };
-use gyro_runner::{Input, JointSample, Sample, energy_error};
+use gyro_runner::{JointSample, Sample, Start, energy_error};
 use std::fmt::Write as _;
 
 /// A quantity that every sample has.
@@ -89,13 +89,16 @@ pub(crate) fn outputs(model: &Model) -> Vec<(String, &'static str)> {
     named.collect()
 }
 
-/// The value of each input at a time: as it was set, or else the model file's.
-pub(crate) fn inputs_at(model: &Model, set: &[Input], t: f64) -> Vec<f64> {
+/// The value of each input at a sample: as it was set, or else the model file's.
+pub(crate) fn inputs_at(model: &Model, start: &Start, sample: &Sample) -> Vec<f64> {
     let value = |(index, input): (usize, &Parameter)| {
-        let set = set.iter().find(|set| set.index == index);
-        set.map_or_else(|| gyro_model::to_f64(&input.value), |set| set.at(t))
+        let set = start.inputs.iter().find(|set| set.index == index);
+        set.map_or_else(|| gyro_model::to_f64(&input.value), |set| set.at(sample.t))
     };
-    model.inputs.iter().enumerate().map(value).collect()
+    let mut values: Vec<f64> = model.inputs.iter().enumerate().map(value).collect();
+    let controlled = start.controllers.iter().flat_map(|controller| &controller.inputs);
+    controlled.zip(&sample.controlled).for_each(|((index, _), value)| values[*index] = *value);
+    values
 }
 
 /// Unit of an input, from the first force whose strength it is; none is told of one that nothing uses.
@@ -119,10 +122,10 @@ pub(crate) fn input_unit(model: &Model, input: usize) -> &'static str {
 }
 
 /// The table of a run, in a fixed order: time, inputs, joints, outputs, free bodies, energy, violations, charts.
-pub(crate) fn columns(model: &Model, set: &[Input], samples: &[Sample]) -> Vec<Column> {
+pub(crate) fn columns(model: &Model, start: &Start, samples: &[Sample]) -> Vec<Column> {
     let mut table = Table { samples, columns: Vec::new() };
     table.add("t", "s", |s| s.t);
-    table.add_inputs(model, set);
+    table.add_inputs(model, start);
     for (index, coordinate) in coordinates(model).iter().enumerate() {
         table.add_coordinate(index, coordinate);
     }
@@ -174,13 +177,13 @@ impl Table<'_> {
     }
 
     /// By their names; what has the name of a joint, an output or a body is called an input.
-    fn add_inputs(&mut self, model: &Model, set: &[Input]) {
+    fn add_inputs(&mut self, model: &Model, start: &Start) {
         let joints = model.joints.iter().map(|joint| &joint.name);
         let taken: Vec<&String> = joints.chain(model.outputs.iter().map(|output| &output.name)).collect();
         for (index, input) in model.inputs.iter().enumerate() {
             let name = &input.name;
             let name = if taken.contains(&name) { format!("input {name}") } else { name.clone() };
-            self.add(&name, input_unit(model, index), |s| inputs_at(model, set, s.t)[index]);
+            self.add(&name, input_unit(model, index), |s| inputs_at(model, start, s)[index]);
         }
     }
 

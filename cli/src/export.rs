@@ -6,6 +6,7 @@ mod fmu;
 pub(crate) mod wasm;
 
 use crate::args::{CArgs, ExportArgs, Precision, Target};
+use crate::controllers;
 use crate::failure::Failure;
 use crate::generate::{Asked, modules};
 use crate::progress::Spinner;
@@ -36,6 +37,7 @@ const LIBRARY_MARK: &str = "!<arch>\n";
 fn c(args: &CArgs) -> Result<(), Failure> {
     let module = module(&args.model, args.functions.as_deref(), args.strict)?;
     let model = scene::read(&args.model)?;
+    controllers::say_left_out(&model, "the exported code");
     let exported = gyro_export::c(&model, &module.code, numbers(args.precision))
         .map_err(|e| unwritten(&args.model, &e))?;
     prove(&args.model, (&model, &module), &exported)?;

@@ -2,7 +2,7 @@
 
 use crate::args::InputSetting;
 use crate::failure::Failure;
-use crate::{files, words};
+use crate::{controllers, files, words};
 use gyro_model::{Model, Rational};
 use gyro_runner::{Between, Input};
 use std::path::Path;
@@ -16,6 +16,10 @@ pub(crate) fn inputs(model: &Model, given: &[(String, InputSetting)]) -> Result<
             known.iter().position(|other| other == name).ok_or_else(|| unknown(model, name, &known))?;
         if inputs.iter().any(|input| input.index == index) {
             return Err(Failure::Usage(format!("--input gives `{name}` twice")));
+        }
+        if let Some(controller) = controllers::setting(model, index) {
+            let words = format!("--input {name}: the controller `{}` sets this input", controller.name);
+            return Err(Failure::Usage(words));
         }
         let input = match setting {
             InputSetting::Number(value) => Input::constant(index, *value),
@@ -36,8 +40,22 @@ pub(crate) fn inputs(model: &Model, given: &[(String, InputSetting)]) -> Result<
     Ok(inputs)
 }
 
+/// An input as the table in a file has it, between its rows as is said or else as in the model file.
+///
+/// # Errors
+/// A table that cannot be read, or values that the input cannot have.
+pub(crate) fn table(
+    model: &Model,
+    index: usize,
+    (path, said): (&Path, Option<Between>),
+) -> Result<Input, String> {
+    let input = Input::new(index, read(path)?, said.unwrap_or_else(|| between(model, index)));
+    check(model, &input)?;
+    Ok(input)
+}
+
 /// What the model file says an input is between the rows of a table.
-pub(crate) fn between(model: &Model, index: usize) -> Between {
+fn between(model: &Model, index: usize) -> Between {
     match model.between.get(index).copied().unwrap_or_default() {
         gyro_model::Between::Held => Between::Held,
         gyro_model::Between::Linear => Between::Linear,
@@ -85,7 +103,7 @@ fn increasing(rows: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, String> {
 }
 
 /// The rows of a table in a file.
-pub(crate) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
+fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     let text =
         files::input(path, files::LARGEST_TABLE).map_err(|e| format!("the file cannot be read: {e}"))?;
     rows(&text)

@@ -5,7 +5,7 @@ use crate::verdict::{self, Outcome, Verdict};
 use crate::{columns, linearization, remarks};
 use gyro_model::Model;
 use gyro_runner::motion::Linear;
-use gyro_runner::{Advice, Difference, JointSample};
+use gyro_runner::{Advice, Difference, JointSample, Sample};
 use gyro_sim::Statistics;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
@@ -31,7 +31,7 @@ pub(crate) fn object(
         "degrees_of_freedom": scene.model.degrees_of_freedom(),
         "redundant": redundant(&scene.model),
         "joints": joints(&scene.model, &last.coordinates),
-        "inputs": inputs(scene, last.t),
+        "inputs": inputs(scene, last),
         "outputs": outputs(&scene.model, &last.outputs),
         "components": components(&scene.model),
         "files": files(written),
@@ -109,9 +109,9 @@ fn outputs(model: &Model, values: &[f64]) -> Map<String, Value> {
     object
 }
 
-/// For each input its value at a time.
-fn inputs(scene: &Scene, t: f64) -> Map<String, Value> {
-    let values = columns::inputs_at(&scene.model, &scene.start.inputs, t);
+/// For each input its value at a sample.
+fn inputs(scene: &Scene, sample: &Sample) -> Map<String, Value> {
+    let values = columns::inputs_at(&scene.model, &scene.start, sample);
     scene.model.inputs.iter().zip(values).map(|(input, value)| (input.name.clone(), json!(value))).collect()
 }
 

@@ -167,7 +167,7 @@ impl Run {
 
     /// The table of the run, as `simulate` writes it: time, inputs, joints, outputs, free bodies, energies.
     pub fn columns(&self) -> Vec<Column> {
-        columns::columns(&self.scene.model, &self.scene.start.inputs, &self.outcome.samples)
+        columns::columns(&self.scene.model, &self.scene.start, &self.outcome.samples)
     }
 
     /// Names and units of the outputs' numbers.

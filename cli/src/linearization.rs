@@ -1,8 +1,8 @@
 //! `simulate --linearize`: the joint form near a state, as a control engineer takes it away.
 
-use crate::columns;
 use crate::verdict::eigenvalues;
 use crate::words::{number, table};
+use crate::{closed_loop, columns};
 use gyro_model::Model;
 use gyro_runner::motion::{Element, Linear};
 use gyro_sim::JointPlace;
@@ -49,7 +49,7 @@ pub(crate) fn object(model: &Model, linear: &Linear) -> Value {
     let rows = |values: &[f64], n: usize| -> Vec<Vec<f64>> {
         if n == 0 { vec![] } else { values.chunks(n).map(<[f64]>::to_vec).collect() }
     };
-    json!({
+    let mut object = json!({
         "t": linear.t,
         "states": names(model, linear),
         "inputs": model.inputs.iter().map(|input| input.name.clone()).collect::<Vec<_>>(),
@@ -62,7 +62,11 @@ pub(crate) fn object(model: &Model, linear: &Linear) -> Value {
         "C": rows(&linear.outputs_by_state, n),
         "D": rows(&linear.outputs_by_inputs, m),
         "eigenvalues": eigenvalues(linear),
-    })
+    });
+    if let Some(closed) = closed_loop::object(model, linear) {
+        object["closed_loop"] = closed;
+    }
+    object
 }
 
 /// The tables of the summary.
@@ -81,7 +85,7 @@ pub(crate) fn text(model: &Model, linear: &Linear) -> String {
         matrix("D", &inputs, (&outputs, &linear.outputs_by_inputs)),
     ];
     text += &tables.into_iter().flatten().collect::<Vec<_>>().join("\n");
-    text + &format!("\n{}", spectrum(linear))
+    text + &format!("\n{}{}", spectrum(linear), closed_loop::text(model, linear))
 }
 
 /// A matrix with names of its columns and rows; `None` for one without numbers.

@@ -106,11 +106,17 @@ fn builder_of_all(module: &Module, precision: &str) -> String {
 /// The program's own lines: with what motions are begun is decided by what runs are to be made, and by what the module
 /// implements. Nothing is imported: a mechanism may have the name of anything.
 pub(crate) fn main(module: &Module, precision: Precision, runs: Option<Runs>) -> String {
-    main_by("::gyro_runner::child::main", module, precision, runs)
+    main_by("::gyro_runner::child::main", module, precision, runs, "")
 }
 
-/// The same with another function that answers requests.
-pub(crate) fn main_by(answer: &str, module: &Module, precision: Precision, runs: Option<Runs>) -> String {
+/// The same with another function that answers requests, and what that is told besides.
+pub(crate) fn main_by(
+    answer: &str,
+    module: &Module,
+    precision: Precision,
+    runs: Option<Runs>,
+    more: &str,
+) -> String {
     let (type_name, precision) = (&module.type_name, precision.name());
     let builder = match runs {
         Some(runs) => runs.builder(module, precision),
@@ -129,7 +135,7 @@ fn build<T: ::gyro_sim::Scalar>(parameters: &[f64]) -> mechanism::{type_name}<T>
 }}
 
 fn main() -> ::std::process::ExitCode {{
-    {answer}(|parameters| (build::<{precision}>(parameters), {builder}))
+    {answer}(|parameters| (build::<{precision}>(parameters), {builder}){more})
 }}
 "
     )

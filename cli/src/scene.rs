@@ -3,9 +3,11 @@
 use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::progress::Spinner;
-use crate::{files, inputs, remarks};
+use crate::{controllers, files, inputs, remarks};
 use gyro_model::{ForceKind, JointKind, Method, Model, Move, Number, Rational, Support};
-use gyro_runner::{Approach, Coordinates, Correction, Input, Offers, Settings, Start, any_varies};
+use gyro_runner::{
+    Approach, Controller, Coordinates, Correction, Input, Offers, Settings, Start, any_varies,
+};
 use std::path::Path;
 
 /// A run to be made.
@@ -50,7 +52,12 @@ impl Scene {
         refuse_joint_coordinates(&model, args)?;
         let (settings, approach) = (settings(&model, args), approach(&model, args));
         let inputs = inputs::inputs(&model, &args.input)?;
-        let offers = Offers { inputs_vary: any_varies(&inputs), ..offers(&model, args) };
+        let start_controllers = controllers::controllers(&model);
+        let offers = Offers {
+            inputs_vary: any_varies(&inputs) || !start_controllers.is_empty(),
+            period: start_controllers.iter().map(Controller::period_s).reduce(f64::min),
+            ..offers(&model, args)
+        };
         if let Some(words) = refusal(&offers, &settings, &approach, args) {
             return Err(Failure::Usage(words));
         }
@@ -176,7 +183,8 @@ fn offers(model: &Model, args: &SimulateArgs) -> Offers {
 fn is_balanced(model: &Model, inputs: &[Input]) -> bool {
     let varies = |number: &Number| match number {
         Number::Input { index, .. } => {
-            inputs.iter().any(|input| input.index == *index && any_varies(std::slice::from_ref(input)))
+            controllers::setting(model, *index).is_some()
+                || inputs.iter().any(|input| input.index == *index && any_varies(std::slice::from_ref(input)))
         }
         Number::Exact(_) | Number::Parameter { .. } | Number::Computed(_) => false,
     };
@@ -263,6 +271,7 @@ pub(crate) fn start(model: &Model, assembled: &gyro_model::Start) -> Start {
         inputs: Vec::new(),
         knots: model.knots(),
         observed_bodies: observed(model).into_iter().map(|(moving_body, _)| moving_body).collect(),
+        controllers: controllers::controllers(model),
     }
 }
 

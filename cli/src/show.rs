@@ -1,6 +1,7 @@
 //! `cargo xtask show`: a page in which a model moves.
 
 mod describe;
+mod efforts;
 mod live;
 
 use crate::args::{Change, Engine, ShowArgs, SimulateArgs};
@@ -17,6 +18,35 @@ use std::process::{Command, Stdio};
 
 /// Simulates a model and writes a page in which it moves.
 pub(crate) fn show(args: &ShowArgs) -> Result<(), Failure> {
+    let Written { path, size, samples, incomplete } = written(args)?;
+    let samples = words::count(samples as u64, "sample");
+    remarks::say(&format!(
+        "wrote {} ({size} kB, {samples}): open it in a browser, from disk\n",
+        path.display()
+    ))?;
+    if let Some(words) = incomplete {
+        return Err(Failure::Run(format!("{words}\nThe page shows the run up to there.")));
+    }
+    if args.open { open(&path) } else { Ok(()) }
+}
+
+/// The same for a page that shows the model file's own run, without a word.
+pub(crate) fn beside(model: &Path, page: &Path) -> Result<(), Failure> {
+    written(&ShowArgs::of(model, page)?).map(|_| ())
+}
+
+/// A page that was written.
+struct Written {
+    path: PathBuf,
+    /// In kB.
+    size: usize,
+    /// How many there are in all runs.
+    samples: usize,
+    /// Why a run ended early.
+    incomplete: Option<String>,
+}
+
+fn written(args: &ShowArgs) -> Result<Written, Failure> {
     refuse_other_results(&args.simulate)?;
     let first = Scene::new(&with_engine(&args.simulate)?)?;
     let path = args.simulate.out.clone().unwrap_or_else(|| {
@@ -41,8 +71,8 @@ pub(crate) fn show(args: &ShowArgs) -> Result<(), Failure> {
         _ => None,
     };
     let mut shown = Vec::new();
-    let mut n_samples = 0;
     let mut incomplete = None;
+    let mut n_samples = 0;
     for (mut scene, name) in scenes.into_iter().zip(names) {
         if args.reactions {
             add_reactions(&mut scene);
@@ -54,16 +84,7 @@ pub(crate) fn show(args: &ShowArgs) -> Result<(), Failure> {
     }
     let html = gyro_show::page(&shown[0].mechanism.name.clone(), &shown, live.as_ref());
     write::write(&path, &html, Known::Mark(gyro_show::MARK))?;
-    let size = html.len().div_ceil(1000);
-    let samples = words::count(n_samples as u64, "sample");
-    remarks::say(&format!(
-        "wrote {} ({size} kB, {samples}): open it in a browser, from disk\n",
-        path.display()
-    ))?;
-    if let Some(words) = incomplete {
-        return Err(Failure::Run(format!("{words}\nThe page shows the run up to there.")));
-    }
-    if args.open { open(&path) } else { Ok(()) }
+    Ok(Written { path, size: html.len().div_ceil(1000), samples: n_samples, incomplete })
 }
 
 /// Options of `simulate` that ask for something else than a motion.

@@ -176,7 +176,7 @@ fn write_files(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<Vec<P
 
 fn write_table(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<PathBuf, Failure> {
     let path = table_path(&scene.model.name, folder);
-    let columns = columns::columns(&scene.model, &scene.start.inputs, samples);
+    let columns = columns::columns(&scene.model, &scene.start, samples);
     write::write(&path, columns::text(&columns), Known::Record)?;
     Ok(path)
 }

@@ -3,7 +3,7 @@
 use crate::args::Engine;
 use crate::scene::Scene;
 use crate::words::{count, number, table};
-use crate::{columns, compare, remarks, verdict};
+use crate::{columns, compare, controllers, remarks, verdict};
 use gyro_assembled::Careful;
 use gyro_codegen::Effort;
 use gyro_model::{Model, Move};
@@ -133,6 +133,10 @@ fn mechanism(scene: &Scene) -> String {
     }
     text.push('\n');
     for (index, input) in model.inputs.iter().enumerate() {
+        if let Some(controller) = controllers::setting(model, index) {
+            let _ = writeln!(text, "input {}: set by controller {}", input.name, controller.name);
+            continue;
+        }
         let given = scene.start.inputs.iter().find(|given| given.index == index);
         let _ = match given.map(|given| given.rows.as_slice()) {
             None => writeln!(text, "input {} = {:?}", input.name, gyro_model::to_f64(&input.value)),

@@ -78,8 +78,10 @@ fn a_page_without_a_reference_is_reported_whole() {
     let markdown = folder.text("out/my-pendulum.md");
     assert!(markdown.contains("because this model file has no reference solution"), "{markdown}");
     let html = folder.text("out/my-pendulum.html");
-    // Self-contained: figures inside, nothing from elsewhere.
-    assert!(html.matches("<svg").count() >= 6 && !html.contains("src=") && !html.contains("<link"));
+    // Figures inside, nothing from elsewhere but the page beside it in which the pendulum moves.
+    assert!(html.matches("<svg").count() >= 6 && !html.contains("<link"));
+    assert!(html.matches("src=").count() == 1 && html.contains("<iframe src=\"my-pendulum-moving.html\""));
+    assert!(folder.text("out/my-pendulum-moving.html").contains("written by gyro show"));
     for figure in ["overview", "time", "evaluations", "time-f32", "order", "drift", "stability"] {
         let svg = folder.text(&format!("out/images/my-pendulum-{figure}.svg"));
         assert!(svg.contains("<polyline"), "nothing is drawn in {figure}");

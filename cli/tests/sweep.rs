@@ -332,3 +332,98 @@ fn the_top_sleeps_above_the_limit_of_theory() {
         }
     }
 }
+
+/// Of a linkage, whose start is assembled anew for each scenario: derivatives of the first row against differences of
+/// the other rows.
+#[test]
+#[ignore = "compiles programs"]
+fn derivatives_of_a_linkage_are_differences_of_its_rows() {
+    let (middle, apart) = ([0.2, 0.5, 6.2], 1e-3);
+    let shifted = (0..3).flat_map(|target| [-2.0, -1.0, 1.0, 2.0].map(|parts| (target, parts)));
+    let mut points = vec![middle];
+    for (target, parts) in shifted {
+        let mut point = middle;
+        point[target] += parts * apart;
+        points.push(point);
+    }
+    // Lists multiply: a study varies the lengths, another the rate.
+    let (parameters, rates): (Vec<_>, Vec<_>) =
+        points.iter().map(|[crank, coupler, rate]| (vec![*crank, *coupler], *rate)).unzip();
+    let study = |rows: &[Vec<f64>], rate: &[f64]| {
+        format!(
+            r#"
+run = {{ coordinates = "joint", tolerance = 1e-11, integrator = "dop853", t_end = 0.3, every = 0.02 }}
+[keep]
+final = ["pen.rx", "rocker_pivot", "knee rate z", "energy"]
+extremes = "rocker_pivot"
+passages = [{{ of = "crank_pivot", above = 2 }}]
+sensitivities = true
+[[vary]]
+parameter = ["crank", "coupler"]
+values = {rows:?}
+[[vary]]
+start = "crank_pivot rate"
+values = {rate:?}
+"#
+        )
+    };
+    let folder = Folder::new();
+    let run = |text: &str, name: &str| {
+        let study = folder.study("studies/models/coupler-curve.toml", text);
+        let out = folder.0.join(name);
+        ran(&[study.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        rows(&out.join("scenarios.csv"))
+    };
+    let lengths = run(&study(&parameters[..9], &rates[..1]), "lengths");
+    let rates = [&rates[..1], &rates[9..]].concat();
+    let of_rate = run(&study(&parameters[..1], &rates), "rates");
+    let numbers = 7;
+    let mut judged = 0;
+    for (target, table, first) in [(0, &lengths, 1), (1, &lengths, 5), (2, &of_rate, 1)] {
+        for number in 0..numbers {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| table[first + k][4 + number]);
+            let expected = (8.0 * (c - b) - (d - a)) / (12.0 * apart);
+            let found = table[0][4 + numbers + 3 * number + target];
+            assert!(
+                (found - expected).abs() < 1e-6 * (1.0 + expected.abs()),
+                "{number}, {target}: {found} {expected}"
+            );
+            judged += usize::from(expected.abs() > 1e-6);
+        }
+    }
+    assert!(judged > 15, "{judged}");
+}
+
+/// Tables of a study are, between their rows, what `simulate --input` makes of them.
+#[test]
+#[ignore = "compiles programs"]
+fn tables_are_between_their_rows_as_inputs_are() {
+    let folder = Folder::new();
+    let model =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/arm/arm.toml")).unwrap();
+    fs::write(folder.0.join("arm.toml"), model).unwrap();
+    fs::write(folder.0.join("u.csv"), "0,0\n0.1,2\n0.2,-1\n0.4,1\n").unwrap();
+    let words = ["linear", "held", "smooth"];
+    let study = folder.0.join("study.toml");
+    let text = "format = 1\nmodel = \"arm.toml\"\n\
+        run = { t_end = 0.3, tolerance = 1e-9, integrator = \"dop853\" }\nkeep = { final = \"energy\" }\n\
+        vary = [{ input = \"motor\", tables = [\"linear:u.csv\", \"held:u.csv\", \"smooth:u.csv\"] }]\n";
+    fs::write(&study, text).unwrap();
+    ran(&[study.to_str().unwrap(), "--out", folder.0.join("out").to_str().unwrap()]);
+    let found = rows(&folder.0.join("out/scenarios.csv"));
+    for (row, word) in found.iter().zip(words) {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gyro"));
+        let input = format!("motor={word}:{}", folder.0.join("u.csv").display());
+        let out = folder.0.join(word);
+        command.args(["simulate", folder.0.join("arm.toml").to_str().unwrap(), "--input", &input]);
+        command.args(["--t-end", "0.3", "--tolerance", "1e-9", "--integrator", "dop853", "--out"]).arg(&out);
+        assert!(command.output().unwrap().status.success());
+        let table = fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().path());
+        let table = table.into_iter().find(|path| path.extension().is_some_and(|e| e == "csv")).unwrap();
+        let text = fs::read_to_string(table).unwrap();
+        let place = text.lines().next().unwrap().split(',').position(|name| name == "energy [J]").unwrap();
+        let last: f64 = text.lines().last().unwrap().split(',').nth(place).unwrap().parse().unwrap();
+        assert_eq!(row[2], last, "{word}");
+    }
+    assert!(found[0][2] != found[1][2] && found[1][2] != found[2][2]);
+}

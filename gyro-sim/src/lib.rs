@@ -105,10 +105,12 @@ extern crate self as gyro_sim;
 pub mod admissible;
 mod apart;
 pub mod charts;
+pub mod contact;
 mod contract;
 pub mod correct;
 mod dual;
 mod error;
+pub mod events;
 pub mod fused;
 #[cfg(feature = "generated")]
 pub mod generated;

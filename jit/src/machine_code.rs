@@ -134,8 +134,8 @@ struct Compiled<T: Native> {
 }
 
 impl<T: Native> Compiled<T> {
-    /// Calls it after comparing the lengths of all arrays with its reach; `tables` and `work` are those of a kernel that is
-    /// not plain.
+    /// Calls it after comparing the lengths of all arrays with its reach; `tables` and `work` are those of a kernel
+    /// that is not plain.
     #[inline(always)]
     fn call(&self, kernel: Kernel, arguments: Arguments<'_, T>, beside: Option<(&[T], &mut [T])>) {
         let Arguments { t, state, given, own, out } = arguments;
@@ -155,9 +155,9 @@ impl<T: Native> Compiled<T> {
         let (tables, work) = beside
             .map_or((state, std::ptr::null_mut()), |(tables, work)| (tables.as_ptr(), work.as_mut_ptr()));
         // SAFETY: the function reads and writes no more of each array than `reach`, which was counted as its loads and
-        // stores were written and is within the arrays' lengths (zero for the tables and the work space of plain ones); it
-        // writes to the last two alone, which are borrowed mutably; it keeps no address. The code is alive as `Code`, which
-        // owns both, is.
+        // stores were written and is within the arrays' lengths (zero for the tables and the work space of plain
+        // ones); it writes to the last two alone, which are borrowed mutably; it keeps no address. The code is alive
+        // as `Code`, which owns both, is.
         unsafe { (self.function)(t.time(), state, given, own, tables, work, out.as_mut_ptr()) }
     }
 }

@@ -10,6 +10,7 @@
 
 mod assemble;
 mod computation;
+mod controller;
 mod diagnostics;
 mod directions;
 mod elements;
@@ -28,6 +29,7 @@ mod validate;
 
 pub use assemble::{AssemblyError, JointStart, Move, START_TOLERANCE, Start, StartTolerances};
 pub use computation::Computation;
+pub use controller::{Controller, Law, Seen};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
     CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame, Output,
@@ -73,6 +75,8 @@ pub struct Model {
     pub forces: Vec<Force>,
     /// What is to be computed besides the motion.
     pub outputs: Vec<Output>,
+    /// Sampled controllers, which runs close loops with; generated code knows nothing of them.
+    pub controllers: Vec<Controller>,
     /// Constraint rows that depend on others and were dropped: found by rank when the model file was read.
     pub redundant: Vec<RedundantRow>,
     /// Whether the state carries the work of what is not conservative, where there is such: see [`Model::has_work`].

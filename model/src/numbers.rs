@@ -31,6 +31,7 @@ impl Model {
         self.drivers.iter().for_each(|driver| driver.motion.add_numbers(&mut numbers));
         self.forces.iter().for_each(|force| force.kind.add_numbers(&mut numbers));
         self.outputs.iter().for_each(|output| numbers.extend(output.kind.point().into_iter().flatten()));
+        self.controllers.iter().for_each(|controller| numbers.extend(controller.numbers()));
         numbers
     }
 }

@@ -345,6 +345,7 @@ mod tests {
                 t,
                 coordinates: vec![angle(amplitude * sin, amplitude * frequency * cos), angle(spin * t, spin)],
                 outputs: vec![],
+                controlled: vec![],
                 bodies: vec![],
                 kinetic: 1.0,
                 potential: 0.0,

@@ -15,6 +15,8 @@ pub struct Offers {
     pub epsilon: f64,
     /// Whether an input changes during the run.
     pub inputs_vary: bool,
+    /// The shortest period of the controllers, s; `None` without any.
+    pub period: Option<f64>,
 }
 
 /// A tolerance beyond which nothing is asked for: an error as large as the motion.
@@ -31,6 +33,7 @@ impl Offers {
         projection: true,
         epsilon: f64::EPSILON,
         inputs_vary: false,
+        period: None,
     };
 
     /// The finest tolerance that is accepted.
@@ -45,6 +48,16 @@ impl Offers {
         }
         if approach.budget == Some(0) {
             return Some("a budget of 0 steps leads nowhere".to_owned());
+        }
+        if let Some(period) = self.period
+            && approach.tolerance.is_none()
+            && settings.step > period * (1.0 + 1e-9)
+        {
+            return Some(format!(
+                "steps of {:e} s are longer than the period of a controller, {period:e} s: choose a --step of it or of a part of \
+                 it, or a --tolerance",
+                settings.step
+            ));
         }
         self.refused_tolerance(approach).or_else(|| self.refused_method(approach))
     }

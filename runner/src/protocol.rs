@@ -90,7 +90,9 @@ pub fn read<T: DeBin>(input: &mut impl BufRead) -> io::Result<Option<T>> {
 mod tests {
     use super::*;
     use crate::motion::Element;
-    use crate::{BodySample, Coordinates, Correction, Input, Integrator, JointSample, When};
+    use crate::{
+        BodySample, Controller, Coordinates, Correction, Input, Integrator, JointSample, Seen, When, Wiring,
+    };
     use gyro_sim::{JointPlace, Owner, Passage, Statistics};
     use gyro_yardstick::Measured;
 
@@ -133,6 +135,14 @@ mod tests {
                         Input::new(0, vec![], crate::Between::Held),
                     ],
                     observed_bodies: vec![0, 12],
+                    controllers: vec![Controller {
+                        law: Wiring::TransferFunction(AWKWARD.to_vec(), vec![AWKWARD[1]]),
+                        outputs: vec![Seen::Output(3), Seen::Rate(1, 0)],
+                        inputs: vec![(2, AWKWARD[0])],
+                        period: [1, 3],
+                        limits: Some([AWKWARD[1], AWKWARD[6]]),
+                        ..Controller::default()
+                    }],
                 },
                 measure_for: correct_every.map(|every| 3.0 * every),
             };
@@ -151,6 +161,7 @@ mod tests {
             t: 0.1 + 0.2,
             coordinates,
             outputs: vec![AWKWARD[4], AWKWARD[3]],
+            controlled: vec![AWKWARD[5]],
             bodies: vec![BodySample { pose: AWKWARD, velocity: [AWKWARD[6]; 6] }],
             kinetic: 1.0,
             potential: -2.0 / 3.0,

@@ -1,6 +1,12 @@
 //! The loop.
 
+mod control;
+mod state;
+
+pub(crate) use state::state;
+
 use crate::advice::Plan;
+use crate::control::{Controller, Controllers};
 use crate::failure::behind;
 use crate::forecast::{self, Forecast};
 use crate::input::{any_varies, set};
@@ -10,7 +16,7 @@ use crate::sample::{Observer, work_scale};
 use crate::spectrum::fastest_rate;
 use crate::{
     Approach, Coordinates, Correction, Failure, Input, Sample, Schedule, Segment, Settings, Summary, Tracker,
-    describe, describe_in,
+    describe_in,
 };
 use gyro_sim::{
     CorrectedDynamics, Dynamics, Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns,
@@ -37,6 +43,8 @@ pub struct Start {
     pub knots: Vec<f64>,
     /// Indices of the bodies whose pose and velocity are sampled.
     pub observed_bodies: Vec<usize>,
+    /// What sets inputs in a closed loop; none of them is among `inputs`, and none is set twice.
+    pub controllers: Vec<Controller>,
 }
 
 /// What a run has to tell.
@@ -97,14 +105,15 @@ pub fn run_by<M: Partition<Scalar: Real> + Clone + 'static>(
     let settings = scheduled(settings, approach);
     let offers = Offers {
         epsilon: <M::Scalar as Real>::EPSILON.to_f64(),
-        inputs_vary: any_varies(&start.inputs),
+        inputs_vary: any_varies(&start.inputs) || !start.controllers.is_empty(),
+        period: start.controllers.iter().map(Controller::period_s).reduce(f64::min),
         ..builder.offers()
     };
     if let Some(words) = offers.refusal(&settings, approach) {
         return Err(Failure::Refused(words));
     }
     let y = state(mechanism, start)?;
-    refuse_singular(mechanism, &y)?;
+    state::refuse_singular(mechanism, &y)?;
     set(mechanism, &start.inputs, 0.0);
     let mut told = Told { tell, last: Instant::now() };
     foretell(mechanism, builder, (&settings, approach), &y, &mut told)?;
@@ -240,20 +249,12 @@ pub fn scheduled(settings: &Settings, approach: &Approach) -> Settings {
     Settings { correct_every: settings.correct_every.filter(|_| has_moments), step, ..*settings }
 }
 
-/// In a singular pose accelerations are not defined: better to say so than to integrate what is not finite.
-fn refuse_singular<M: Partition>(mechanism: &M, start: &M::State) -> Result<(), Failure> {
-    let t = Scalar::constant(0.0);
-    match mechanism.newton_step(t, &mechanism.independent(t, start), &mut start.clone()) {
-        Err(error @ Error::Singular { .. }) => Err(Failure::run(describe(mechanism, &error))),
-        _ => Ok(()),
-    }
-}
-
 /// The state under way, with its solvers.
 struct Run<'a, M: Partition<Scalar: Real>> {
     mechanism: &'a mut M,
     motion: Box<dyn Motion<M>>,
     inputs: &'a [Input],
+    controllers: Controllers<M::Scalar>,
     steps_at_once: u64,
     /// Fixed steps that may yet be taken; under error control the solver counts them.
     budget: u64,
@@ -278,6 +279,7 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         Self {
             motion,
             inputs: &start.inputs,
+            controllers: Controllers::new(&start.controllers),
             steps_at_once: if any_varies(&start.inputs) { 1 } else { STEPS_BETWEEN_READINGS },
             budget: approach.budget.unwrap_or(u64::MAX),
             turns: Turns::new(mechanism, Scalar::constant(0.0), &y, &angles),
@@ -347,14 +349,16 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
                 let steps = self.motion.statistics().accepted;
                 return Err(Error::TooManySteps { t: self.motion.time(), steps }.into());
             }
-            self.budget -= n_steps;
             self.set_inputs();
             let began = Instant::now();
-            for _ in 0..n_steps {
+            self.control()?;
+            let mut taken = 0;
+            while taken < n_steps && !(taken > 0 && self.controllers.is_due(self.now())) {
                 self.motion.step(self.mechanism, h)?;
+                taken += 1;
             }
             self.summary.run_time_s += began.elapsed().as_secs_f64();
-            done += n_steps;
+            (self.budget, done) = (self.budget - taken, done + taken);
             self.read_turns(self.motion.time())?;
             told.progress(self.motion.time())?;
         }
@@ -362,6 +366,9 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
             let began = Instant::now();
             self.motion.correct(self.mechanism)?;
             self.summary.run_time_s += began.elapsed().as_secs_f64();
+            if !self.controllers.is_empty() {
+                self.read_turns(self.motion.time())?;
+            }
         }
         Ok(())
     }
@@ -377,7 +384,9 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         let t = M::Scalar::constant(t).to_f64();
         while self.motion.time() < t {
             let began = Instant::now();
-            self.motion.step_towards(self.mechanism, t_end)?;
+            self.control()?;
+            let next = M::Scalar::constant(self.controllers.next()).to_f64();
+            self.motion.step_towards(self.mechanism, t_end.min(next))?;
             self.summary.run_time_s += began.elapsed().as_secs_f64();
             if self.motion.time() <= t {
                 self.read_turns(self.motion.time())?;
@@ -389,8 +398,9 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
 
     /// The joint form at the last state.
     fn linearised(&self, builder: &dyn MotionBuilder<M>, t: f64) -> Option<Linear> {
-        let (angles, inputs) = (self.angles(), self.inputs);
-        builder.linearise(self.mechanism, &OperatingPoint { t, y: &self.y, angles: &angles, inputs })
+        let (angles, mut inputs) = (self.angles(), self.inputs.to_vec());
+        inputs.extend(self.controllers.held().map(|(index, value)| Input::constant(index, value)));
+        builder.linearise(self.mechanism, &OperatingPoint { t, y: &self.y, angles: &angles, inputs: &inputs })
     }
 
     fn set_inputs(&mut self) {
@@ -418,7 +428,13 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         if t > 0.0 {
             self.read_turns(t)?;
         }
-        Ok(self.observer.sample(self.mechanism, t, &self.y, &self.turns, self.motion.chart_switches()))
+        // Of a motion that is beyond this time controllers have acted.
+        if self.motion.time() <= t {
+            self.control()?;
+        }
+        let sample =
+            self.observer.sample(self.mechanism, t, &self.y, &self.turns, self.motion.chart_switches());
+        Ok(Sample { controlled: self.controllers.held().map(|(_, value)| value).collect(), ..sample })
     }
 
     /// The continuous angle of each coordinate at the last reading; zero for what is not an angle.
@@ -459,41 +475,6 @@ impl<'a, M: Partition<Scalar: Real>> Run<'a, M> {
         self.summary.chart_switches = self.motion.chart_switches();
         self.summary.statistics = statistics;
     }
-}
-
-/// The state of a start: `(q, v)`, then zero work where the mechanism counts work, then turn references.
-pub(crate) fn state<M: Partition>(mechanism: &M, start: &Start) -> Result<M::State, Failure> {
-    let mut state = mechanism.start();
-    refuse_misfit(mechanism, state.as_ref().len(), start)?;
-    let (known, rest) = state.as_mut().split_at_mut(13 * mechanism.description().bodies.len());
-    let (work, references) = rest.split_at_mut(rest.len() - start.turn_references.len());
-    work.fill(Scalar::constant(0.0));
-    for (element, value) in known.iter_mut().zip(start.positions.iter().chain(&start.velocities)) {
-        *element = Scalar::constant(*value);
-    }
-    for (element, value) in references.iter_mut().zip(&start.turn_references) {
-        *element = Scalar::constant(*value);
-    }
-    Ok(state)
-}
-
-/// At most the work is left of the state when positions, velocities and turn references are taken away.
-fn refuse_misfit<M: Partition>(mechanism: &M, length: usize, start: &Start) -> Result<(), Failure> {
-    let n_bodies = mechanism.description().bodies.len();
-    let found = [start.positions.len(), start.velocities.len(), start.turn_references.len()];
-    let left = length.checked_sub(found.iter().sum());
-    let fits = found[0] == 7 * n_bodies
-        && found[1] == 6 * n_bodies
-        && left.is_some_and(|left| left <= 1)
-        && start.observed_bodies.iter().all(|&body| body < n_bodies);
-    if fits {
-        return Ok(());
-    }
-    Err(Failure::Refused(format!(
-        "the start has {} positions, {} velocities and {} turn references, the mechanism has {n_bodies} bodies and {length} \
-         elements of its state",
-        found[0], found[1], found[2]
-    )))
 }
 
 #[cfg(test)]

@@ -12,6 +12,8 @@ pub struct Sample {
     pub coordinates: Vec<JointSample>,
     /// Every number of every output, in the order of the model file.
     pub outputs: Vec<f64>,
+    /// The inputs that controllers set, controller after controller.
+    pub controlled: Vec<f64>,
     /// The bodies that were asked for.
     pub bodies: Vec<BodySample>,
     /// Kinetic energy, J.
@@ -81,6 +83,7 @@ impl<'a, M: Mechanism<Scalar: Real>> Observer<'a, M> {
             t,
             coordinates: coordinates(mechanism, turns),
             outputs: self.outputs.as_ref().iter().map(|x| x.to_f64()).collect(),
+            controlled: Vec::new(),
             bodies: self.observed_bodies.iter().map(|&moving_body| body(mechanism, moving_body, y)).collect(),
             kinetic: energy.kinetic.to_f64(),
             potential: energy.potential.to_f64(),
@@ -90,6 +93,12 @@ impl<'a, M: Mechanism<Scalar: Real>> Observer<'a, M> {
             norm_violation,
             chart_switches,
         }
+    }
+
+    /// The numbers of all outputs.
+    pub(crate) fn outputs(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> &[M::Scalar] {
+        mechanism.outputs(t, y, &mut self.outputs);
+        self.outputs.as_ref()
     }
 
     /// Of the joint rows of Φ, of the velocity residual, and of the normalisations.

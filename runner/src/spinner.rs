@@ -45,6 +45,7 @@ impl Spinner {
             inputs: vec![],
             knots: vec![],
             observed_bodies: vec![0],
+            controllers: vec![],
         }
     }
 }

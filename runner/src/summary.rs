@@ -87,6 +87,7 @@ mod tests {
             t: 0.0,
             coordinates: vec![],
             outputs: vec![],
+            controlled: vec![],
             bodies: vec![],
             kinetic,
             potential,

@@ -28,6 +28,9 @@ pub fn time_by<M: Partition<Scalar: Real> + Clone + 'static>(
     start: &Start,
     budget: Duration,
 ) -> Result<Timing, Failure> {
+    if !start.controllers.is_empty() {
+        return Err(Failure::Refused("runs with controllers are not timed without their samples".to_owned()));
+    }
     let settings = Settings { sample_every: settings.t_end, ..scheduled(settings, approach) };
     let y = state(mechanism, start)?;
     let segments: Vec<_> = Schedule::new(&settings).collect();

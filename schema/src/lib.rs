@@ -4,9 +4,11 @@
 //! check`). The types are a description and hold nothing.
 #![deny(missing_docs)]
 
+mod controllers;
 mod elements;
 mod numbers;
 
+use controllers::Controller;
 use elements::{Coupler, Driver, Force, Joint, Output};
 use numbers::{Name, Number, Orientation, Plain, Vector};
 use schemars::JsonSchema;
@@ -46,6 +48,7 @@ struct Model {
     driver: Option<Vec<Driver>>,
     force: Option<Vec<Force>>,
     output: Option<Vec<Output>>,
+    controller: Option<Vec<Controller>>,
 }
 
 #[derive(JsonSchema)]

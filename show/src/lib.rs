@@ -25,6 +25,6 @@ mod page;
 mod run;
 
 pub use live::{Live, Setting, Slope};
-pub use mechanism::{Body, Joint, JointEnd, Link, Load, Mechanism, Shape, Support};
+pub use mechanism::{Amount, Body, Effort, Joint, JointEnd, Link, Load, Mechanism, Shape, Support};
 pub use page::{MARK, page};
 pub use run::{Column, Reaction, Run, Scale, Scene};

@@ -1,6 +1,7 @@
 //! What a mechanism is made of, as far as a picture of it needs to know.
 
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Bodies and what connects them. Lengths in m, all vectors in the frame of the body that they belong to.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -19,6 +20,9 @@ pub struct Mechanism {
     pub springs: Vec<usize>,
     /// Forces at points of bodies.
     pub loads: Vec<Load>,
+    /// What acts along the coordinates of joints.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub efforts: Vec<Effort>,
 }
 
 /// A rigid body; the origin of its frame is at its mass centre.
@@ -104,7 +108,37 @@ pub struct Link {
     pub free_length: f64,
 }
 
-/// A constant force at a point of a body.
+/// A force or torque along a coordinate of a joint, on its second body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Effort {
+    /// Index of the joint.
+    pub joint: usize,
+    /// The coordinate: `angle`, `first_angle`, `second_angle`, `displacement`, `x` or `y`.
+    pub coordinate: &'static str,
+    /// Title of the coordinate's columns.
+    pub title: String,
+    /// What it depends on: `spring`, `damper`, `coulomb`, `upper` and `lower` stop, or `motor`.
+    pub law: &'static str,
+    /// The numbers of the law, by the names that model files have for them.
+    pub numbers: BTreeMap<&'static str, Amount>,
+}
+
+/// A number of a law.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Amount {
+    /// One that the run does not change.
+    Value(f64),
+    /// An input.
+    Input {
+        /// Its index.
+        input: usize,
+        /// 1 or -1, by which it is multiplied.
+        sign: i8,
+    },
+}
+
+/// A constant force at a point of a body, and a torque.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Load {
     /// Its name.
@@ -115,6 +149,8 @@ pub struct Load {
     pub point: [f64; 3],
     /// N.
     pub force: [f64; 3],
-    /// Whether the force is given in the body's frame, with which it turns.
+    /// N·m.
+    pub torque: [f64; 3],
+    /// Whether both are given in the body's frame, with which they turn.
     pub in_body: bool,
 }

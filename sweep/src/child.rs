@@ -5,6 +5,9 @@
 
 mod joint;
 mod packs;
+mod sensitive;
+mod variational;
+mod watch;
 mod whole;
 
 use crate::keep::sample_times;
@@ -15,6 +18,7 @@ use gyro_runner::protocol::read;
 use gyro_runner::{Approach, Settings, Start, scheduled};
 use nanoserde::{DeBin, SerBin};
 pub use packs::packs;
+pub use sensitive::{packs_sensitive, whole_sensitive};
 use std::io::{self, BufRead, Write};
 use std::process::ExitCode;
 pub use whole::whole;
@@ -41,13 +45,16 @@ pub struct Job {
 }
 
 /// Blocks to be run.
-#[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
+#[derive(Clone, Debug, Default, PartialEq, SerBin, DeBin)]
 pub struct Unit {
     /// Their numbers.
     pub blocks: Vec<u64>,
     /// Where their scenarios start, or why they cannot; empty where all start alike.
     #[nserde(proxy = "Starts")]
     pub starts: Vec<Result<Start, String>>,
+    /// For sensitivities the derivatives of each of these starts, those of its positions, velocities and turn
+    /// references by one direction after the other, times the direction's [scale](Plan::scale).
+    pub slopes: Vec<Vec<f64>>,
 }
 
 /// As they are handed over.
@@ -111,8 +118,9 @@ impl Job {
 
 /// What runs scenarios one after the other.
 trait Runs {
-    /// Runs scenarios that follow each other and appends what is kept of them; `starts` has one for each or is empty.
-    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>]);
+    /// Runs scenarios that follow each other and appends what is kept of them; `starts` and `slopes` have one for each
+    /// or are empty.
+    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], slopes: &[Vec<f64>]);
 }
 
 /// Reads the job, then units; answers with records.
@@ -137,13 +145,15 @@ fn answer<R: Runs>(
     let job: &'static Job = Box::leak(Box::new(job));
     let mut runs = begin(job);
     while let Some(unit) = read::<Unit>(input)? {
-        let mut starts = &unit.starts[..];
+        let (mut starts, mut slopes) = (&unit.starts[..], &unit.slopes[..]);
         for block in &unit.blocks {
             let (first, count) = job.range(*block);
             let (own, rest) = starts.split_at((count as usize).min(starts.len()));
             starts = rest;
+            let (own_slopes, rest) = slopes.split_at((count as usize).min(slopes.len()));
+            slopes = rest;
             let mut block = Block { first, count, ..Block::default() };
-            runs.run(&mut block, own);
+            runs.run(&mut block, own, own_slopes);
             output.write_all(&block.encode())?;
             output.flush()?;
         }

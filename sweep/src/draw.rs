@@ -56,6 +56,40 @@ impl Distribution {
         }
     }
 
+    /// Its mean and its variance.
+    pub fn moments(&self) -> [f64; 2] {
+        match *self {
+            Self::Uniform([from, to]) => [0.5 * (from + to), (to - from) * (to - from) / 12.0],
+            Self::Normal([mean, deviation]) => [mean, deviation * deviation],
+            Self::LogUniform([from, to]) => {
+                let length = libm::log(to / from);
+                let [mean, square] = [(to - from) / length, 0.5 * (to - from) * (to + from) / length];
+                if length < NARROW { self.summed() } else { [mean, square - mean * mean] }
+            }
+            Self::Truncated([mean, deviation], [from, to]) => {
+                let [a, b] = [from, to].map(|end| (end - mean) / deviation);
+                // Nearly uniform: the closed form below would cancel.
+                if b - a < NARROW {
+                    return self.summed();
+                }
+                // In the upper tail Φ is one to rounding: seen from there it is the lower one.
+                let ([a, b], side) = if a > 0.0 { ([-b, -a], -1.0) } else { ([a, b], 1.0) };
+                let all = normal::cumulative(b) - normal::cumulative(a);
+                let [at_a, at_b] = [a, b].map(|end| normal::density(end) / all);
+                let shift = at_a - at_b;
+                let ends = if at_a > 0.0 { a * at_a } else { 0.0 } - if at_b > 0.0 { b * at_b } else { 0.0 };
+                [mean + side * deviation * shift, deviation * deviation * (1.0 + ends - shift * shift)]
+            }
+        }
+    }
+
+    /// The same by the midpoint rule over what is equally likely, for distributions within a narrow range.
+    fn summed(&self) -> [f64; 2] {
+        let all = || (0..POINTS).map(|k| self.quantile((f64::from(k) + 0.5) / f64::from(POINTS)));
+        let mean = all().sum::<f64>() / f64::from(POINTS);
+        [mean, all().map(|x| (x - mean) * (x - mean)).sum::<f64>() / f64::from(POINTS)]
+    }
+
     /// The numbers between which it is, infinite ones if need be.
     pub fn range(&self) -> [f64; 2] {
         match *self {
@@ -64,6 +98,12 @@ impl Distribution {
         }
     }
 }
+
+/// Points of the midpoint rule.
+const POINTS: u32 = 1 << 12;
+
+/// A range, in standard deviations, over which a normal distribution is nearly uniform.
+const NARROW: f64 = 0.01;
 
 fn truncated(u: f64, [a, b]: [f64; 2]) -> f64 {
     let [below, up_to] = [a, b].map(normal::cumulative);
@@ -130,6 +170,36 @@ mod tests {
         // Far out it is nearly exponential: half of what lies beyond 37 lies within ln 2 / 37 of it.
         let median = Distribution::Truncated([0.0, 1.0], [37.0, 60.0]).quantile(0.5);
         assert!((median - 37.0 - std::f64::consts::LN_2 / 37.0).abs() < 2e-5, "{median}");
+    }
+
+    /// Against sums over what is equally likely, and for the far tail against an exponential distribution.
+    #[test]
+    fn moments_are_those_of_what_is_drawn() {
+        for distribution in [
+            Distribution::Uniform([-1.0, 3.0]),
+            Distribution::LogUniform([1e-3, 20.0]),
+            Distribution::Truncated([0.5, 2e-4], [0.4997, 0.5003]),
+            Distribution::Truncated([0.0, 1.0], [-1.0, 2.0]),
+            Distribution::Truncated([0.0, 1.0], [0.5, 0.509]),
+            Distribution::Truncated([0.0, 1.0], [0.5, 0.511]),
+            Distribution::Truncated([3.0, 2.0], [8.0, 9.0]),
+        ] {
+            let [mean, variance] = distribution.moments();
+            let n = 100_000;
+            let all = (0..n).map(|k| distribution.quantile((f64::from(k) + 0.5) / f64::from(n)));
+            let sums = all.fold([0.0; 2], |[sum, squares], x| [sum + x, squares + (x - mean) * (x - mean)]);
+            let [expected, spread] = sums.map(|sum| sum / f64::from(n));
+            assert!(
+                (mean - expected).abs() < 1e-7 * (1.0 + spread.sqrt()),
+                "{distribution:?}: {mean} {expected}"
+            );
+            assert!((variance / spread - 1.0).abs() < 1e-6, "{distribution:?}: {variance} {spread}");
+        }
+        assert_eq!(Distribution::Normal([2.0, 3.0]).moments(), [2.0, 9.0]);
+        let [mean, variance] = Distribution::Truncated([0.0, 1.0], [-60.0, -37.0]).moments();
+        assert!((mean + 37.0 + 1.0 / 37.0).abs() < 1e-4 && (variance * 37.0 * 37.0 - 1.0).abs() < 5e-3);
+        let [mean, variance] = Distribution::Truncated([0.0, 1.0], [-60.0, 60.0]).moments();
+        assert!(mean.abs() < 1e-15 && (variance - 1.0).abs() < 1e-15);
     }
 
     #[test]

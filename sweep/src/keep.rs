@@ -92,6 +92,8 @@ pub struct Keep {
     pub estimate: bool,
     /// Those of which all samples are kept.
     pub series: Vec<usize>,
+    /// Targets of the plan by which last values, extremes and passages are differentiated.
+    pub by: Vec<usize>,
 }
 
 impl Keep {
@@ -100,9 +102,14 @@ impl Keep {
         self.finals.len() + 2 * self.extremes.len() + self.passages.len() + usize::from(self.estimate)
     }
 
+    /// How many derivatives are kept of a scenario.
+    pub fn slopes(&self) -> usize {
+        (self.numbers() - usize::from(self.estimate)) * self.by.len()
+    }
+
     /// How many numbers are kept of a scenario with so many samples.
     pub fn width(&self, samples: usize) -> usize {
-        self.numbers() + self.series.len() * samples
+        self.numbers() + self.slopes() + self.series.len() * samples
     }
 }
 
@@ -208,7 +215,7 @@ impl<'a> Keeper<'a> {
 
 impl Passage {
     /// When a line from one point to another passes the level; NaN if it does not.
-    fn between(&self, (t, before): (f64, f64), (to, now): (f64, f64)) -> f64 {
+    pub(crate) fn between(&self, (t, before): (f64, f64), (to, now): (f64, f64)) -> f64 {
         let is_beyond = |value: f64| if self.rises { value >= self.level } else { value <= self.level };
         if !is_beyond(now) {
             return f64::NAN;
@@ -233,7 +240,7 @@ mod tests {
             extremes: vec![0],
             passages: vec![passage(2.0, true), passage(-1.0, false), passage(9.0, true), passage(0.0, true)],
             series: vec![1],
-            estimate: false,
+            ..Keep::default()
         };
         let mut keeper = Keeper::new(&keep, 6);
         for _ in 0..2 {

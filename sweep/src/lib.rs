@@ -18,6 +18,7 @@ mod normal;
 mod plan;
 mod quantiles;
 pub mod record;
+mod slopes;
 mod sobol;
 #[cfg(feature = "study")]
 pub mod study;

@@ -1,6 +1,11 @@
 //! The normal distribution.
 
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{PI, SQRT_2};
+
+/// Φ'(x).
+pub(crate) fn density(x: f64) -> f64 {
+    libm::exp(-0.5 * x * x) / libm::sqrt(2.0 * PI)
+}
 
 /// Φ(x).
 pub(crate) fn cumulative(x: f64) -> f64 {

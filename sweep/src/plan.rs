@@ -4,7 +4,7 @@ use crate::draw::Draw;
 use crate::sobol::Sobol;
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
-use gyro_runner::{Between, Input};
+use gyro_runner::Input;
 use nanoserde::{DeBin, SerBin};
 
 /// What a study varies, and how: scenario k is a function of this and of k.
@@ -47,7 +47,7 @@ pub enum Target {
     /// An input, by its index.
     Input(usize),
     /// An input that follows one of these tables: the value is the table's number.
-    Table(usize, Vec<Vec<[f64; 2]>>),
+    Table(Vec<Input>),
     /// Where a joint's coordinate starts, rad or m: joint and coordinate.
     Start(usize, usize),
     /// The rate at which it starts.
@@ -75,6 +75,43 @@ impl Plan {
         self.grid().saturating_mul(self.repeats).saturating_mul(group)
     }
 
+    /// How large a target's values are, its unit otherwise: what its derivatives are multiplied by to be of the size of
+    /// what they are of.
+    pub fn scale(&self, target: usize) -> f64 {
+        let of_rows = self.axes.iter().flat_map(|axis| {
+            let column = axis.targets.iter().position(|other| *other == target);
+            axis.rows.iter().filter_map(move |row| Some(row[column?].abs()))
+        });
+        let [means, covariance] = self.moments();
+        let drawn = means[target].abs() + libm::sqrt(covariance[target * (self.targets.len() + 1)]);
+        let scale = of_rows.fold(drawn, f64::max);
+        if scale > 0.0 { scale } else { 1.0 }
+    }
+
+    /// Means and covariances of what is drawn, row by row; zero of other targets.
+    pub fn moments(&self) -> [Vec<f64>; 2] {
+        let n = self.targets.len();
+        let (mut means, mut covariance) = (vec![0.0; n], vec![0.0; n * n]);
+        for draw in &self.draws {
+            match draw {
+                Draw::Alone { target, distribution } => {
+                    [means[*target], covariance[target * (n + 1)]] = distribution.moments();
+                }
+                Draw::Together { targets, mean, factor } => {
+                    let m = targets.len();
+                    for (i, row) in targets.iter().enumerate() {
+                        means[*row] = mean[i];
+                        for (j, column) in targets.iter().enumerate() {
+                            let products = (0..m).map(|k| factor[m * i + k] * factor[m * j + k]);
+                            covariance[n * row + column] = products.sum();
+                        }
+                    }
+                }
+            }
+        }
+        [means, covariance]
+    }
+
     /// How many uniform numbers a scenario takes.
     pub fn dimensions(&self) -> usize {
         self.draws.iter().map(Draw::dimensions).sum()
@@ -85,9 +122,7 @@ impl Plan {
         let input = |(target, value): (&Target, &f64)| match target {
             Target::Input(index) => Some(Input::constant(*index, *value)),
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a table's number")]
-            Target::Table(index, tables) => {
-                Some(Input::new(*index, tables.get(*value as usize)?.clone(), Between::Linear))
-            }
+            Target::Table(tables) => tables.get(*value as usize).cloned(),
             _ => None,
         };
         self.targets.iter().zip(values).filter_map(input).collect()

@@ -10,6 +10,7 @@ mod vary;
 use crate::plan::{Plan, Sampling, Target};
 use crate::{Keep, Quantity};
 use gyro_model::{Diagnostic, Diagnostics};
+use gyro_runner::Input;
 use reader::{Reader, Section};
 pub use runs::RunOptions;
 use std::ops::Range;
@@ -32,6 +33,9 @@ pub struct Study {
     pub targets: Vec<(String, String)>,
     /// Name and unit of what is kept besides series.
     pub numbers: Vec<(String, String)>,
+    /// Name and no unit of each derivative that is kept: of each number by each thing that varies, in the units of
+    /// both.
+    pub slopes: Vec<(String, String)>,
     /// Name and unit of each series.
     pub series: Vec<(String, String)>,
     /// The series of which quantiles are wanted, by their index; they come first.
@@ -80,11 +84,11 @@ pub trait Files {
     /// # Errors
     /// A model that cannot be read.
     fn model(&mut self, path: &str) -> Result<Vocabulary, Self::Error>;
-    /// The rows of the table of an input: times and values.
+    /// The input of this index as the table at a path has it.
     ///
     /// # Errors
-    /// What is wrong with it.
-    fn table(&mut self, path: &str) -> Result<Vec<[f64; 2]>, String>;
+    /// What is wrong with the table, or with its values for this input.
+    fn table(&mut self, input: usize, path: &str) -> Result<Input, String>;
 }
 
 /// Scenarios in a block unless the study says otherwise.
@@ -152,6 +156,8 @@ fn page<F: Files>(
     else {
         return Ok(None);
     };
+    let mut kept = kept;
+    kept.sensitivities(reader, &whole, (&varied.targets, &varied.names), &run);
     let plan =
         Plan { seed, sampling, targets: varied.targets, axes: varied.axes, draws: varied.draws, repeats };
     check(reader, &whole, &plan, block);
@@ -163,6 +169,7 @@ fn page<F: Files>(
         block: u32::try_from(block).unwrap_or(BLOCK),
         targets: varied.names,
         numbers: kept.numbers,
+        slopes: kept.slopes,
         series: kept.series,
         quantiles: kept.quantiles,
     }))

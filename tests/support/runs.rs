@@ -54,6 +54,7 @@ pub fn start_of(model: &Model) -> Start {
         angles: angles.collect(),
         turn_references: turns.map(|turn| start.joints[turn.joint].position[turn.coordinate]).collect(),
         inputs: Vec::new(),
+        controllers: Vec::new(),
         knots: Vec::new(),
         observed_bodies: (0..model.coordinate_bodies().len()).collect(),
         positions: start.q,

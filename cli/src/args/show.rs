@@ -1,8 +1,10 @@
 //! The arguments of `show`.
 
-use super::{Engine, SimulateArgs};
-use clap::{Args, ValueEnum};
+use super::{Cli, Command, Engine, SimulateArgs};
+use crate::failure::Failure;
+use clap::{Args, Parser, ValueEnum};
 use gyro_model::{Rational, parse_decimal};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// Show a model moving, in a browser
@@ -45,6 +47,18 @@ pub struct ShowArgs {
     /// Open the page in the browser
     #[arg(long)]
     pub(crate) open: bool,
+}
+
+impl ShowArgs {
+    /// For the run that the model file describes.
+    pub(crate) fn of(model: &Path, page: &Path) -> Result<Self, Failure> {
+        let words = [OsStr::new("gyro"), "show".as_ref(), "--out".as_ref(), page.as_ref(), "--".as_ref()];
+        match Cli::try_parse_from(words.into_iter().chain([model.as_os_str()])).map(|cli| cli.command) {
+            Ok(Command::Show(args)) => Ok(args),
+            Ok(_) => unreachable!("`show` was asked for"),
+            Err(error) => Err(Failure::Usage(error.to_string())),
+        }
+    }
 }
 
 /// What a second run has otherwise.

@@ -219,14 +219,14 @@ fn set_input(text: &str) -> Result<(String, InputSetting), String> {
         Ok(_) => Err(format!("`{value}` is not a finite number")),
         Err(_) if value.is_empty() => Err(format!("a value is missing after `{name}=`")),
         Err(_) => {
-            let (file, between) = file(value);
+            let (file, between) = table(value);
             Ok((name, InputSetting::File(file, between)))
         }
     }
 }
 
-/// A file's name, perhaps with a word and a colon before it.
-fn file(text: &str) -> (PathBuf, Option<Between>) {
+/// The file of a table, perhaps with a word and a colon before it.
+pub(crate) fn table(text: &str) -> (PathBuf, Option<Between>) {
     let known = [("held", Between::Held), ("linear", Between::Linear), ("smooth", Between::Smooth)];
     let found = text.split_once(':').and_then(|(word, file)| {
         let (_, between) = known.iter().find(|(known, _)| *known == word.trim())?;

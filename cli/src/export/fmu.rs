@@ -3,6 +3,7 @@
 use super::{Scratch, run, say};
 use crate::args::{CosimulationMethod, FmuArgs};
 use crate::columns;
+use crate::controllers;
 use crate::failure::Failure;
 use crate::generate::{Asked, modules};
 use crate::progress::Spinner;
@@ -20,6 +21,7 @@ use zip::{CompressionMethod, ZipWriter};
 pub(super) fn fmu(args: &FmuArgs) -> Result<(), Failure> {
     write::check(&args.out, Known::Record)?;
     let model = scene::read(&args.model)?;
+    controllers::say_left_out(&model, "the exported unit");
     let mut functions = vec!["solvers".to_owned()];
     if !model.outputs.is_empty() {
         functions.extend(["joint_outputs", "output_derivatives"].map(str::to_owned));

@@ -2,6 +2,7 @@
 
 use super::{Scratch, module, numbers, prove, say, unwritten};
 use crate::args::WasmArgs;
+use crate::controllers;
 use crate::failure::Failure;
 use crate::files;
 use crate::progress::Spinner;
@@ -17,6 +18,7 @@ use std::{env, fs, io};
 pub(super) fn wasm(args: &WasmArgs) -> Result<(), Failure> {
     let module = module(&args.model, args.functions.as_deref(), args.strict)?;
     let model = scene::read(&args.model)?;
+    controllers::say_left_out(&model, "the exported code");
     let exported =
         written(&model, &module.code, numbers(args.precision)).map_err(|e| unwritten(&args.model, &e))?;
     prove(&args.model, (&model, &module), &exported.c)?;

@@ -15,6 +15,8 @@ enum Block {
     Table(Vec<String>, Vec<Vec<String>>),
     /// Name of the file, what is seen, and the SVG text.
     Figure(String, String, String),
+    /// Name of another HTML page, and what is seen there; in HTML only.
+    Frame(String, String),
 }
 
 impl Page {
@@ -33,6 +35,11 @@ impl Page {
 
     pub(crate) fn figure(&mut self, file: String, caption: impl Into<String>, svg: String) {
         self.blocks.push(Block::Figure(file, caption.into(), svg));
+    }
+
+    /// Another page beside this one, within it.
+    pub(crate) fn frame(&mut self, file: impl Into<String>, caption: impl Into<String>) {
+        self.blocks.push(Block::Frame(file.into(), caption.into()));
     }
 
     /// The figures: file names and texts.
@@ -66,13 +73,14 @@ impl Page {
                 Block::Figure(file, caption, _) => {
                     let _ = writeln!(text, "![{caption}](images/{file})\n\n*{caption}*\n");
                 }
+                Block::Frame(..) => {}
             }
         }
         text.truncate(text.trim_end().len());
         text + "\n"
     }
 
-    /// One file with everything in it.
+    /// One file with everything in it, but for pages in frames.
     pub(crate) fn html(&self, title: &str) -> String {
         let mut text = format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -105,6 +113,13 @@ impl Page {
                         inline(caption)
                     );
                 }
+                Block::Frame(file, caption) => {
+                    let (file, caption) = (escaped(file), escaped(caption));
+                    let _ = writeln!(
+                        text,
+                        "<iframe src=\"{file}\" title=\"{caption}\"></iframe>\n<p><a href=\"{file}\">{caption}</a></p>"
+                    );
+                }
             }
         }
         text + "</body>\n</html>\n"
@@ -119,6 +134,7 @@ th { border-bottom: 2px solid #999; }
 figure { margin: 1.5em 0; }
 figure svg { max-width: 100%; height: auto; }
 figcaption { color: #555; }
+iframe { width: 100%; height: 640px; border: 1px solid #ddd; }
 code { background: #f3f3f3; padding: 0 0.25em; }
 ";
 
@@ -160,6 +176,7 @@ mod tests {
         page.text("See [the index](index.md) and `x = [1]`, **now**.");
         page.table(&["a", "b"], vec![vec!["1 | 2".into(), "-".into()]]);
         page.figure("f.svg".into(), "Seen", "<svg></svg>\n".into());
+        page.frame("other.html", "Moving");
         let (markdown, html) = (page.markdown(), page.html("T"));
         assert_eq!(
             markdown,
@@ -171,6 +188,7 @@ mod tests {
             "<a href=\"index.html\">the index</a> and <code>x = [1]</code>, <b>now</b>.",
             "<td>1 | 2</td>",
             "<figure>\n<svg></svg>\n<figcaption>Seen</figcaption>",
+            "<iframe src=\"other.html\" title=\"Moving\"></iframe>",
         ] {
             assert!(html.contains(part), "{part} in {html}");
         }

@@ -206,6 +206,7 @@ mod tests {
             t,
             coordinates: angles.map(|position| JointSample::Angle { position, rate: 0.0 }).to_vec(),
             outputs: vec![],
+            controlled: vec![],
             bodies: vec![],
             kinetic: 0.0,
             potential: 0.0,

@@ -12,9 +12,9 @@ use super::page::Page;
 use super::study::Study;
 use crate::args::{Engine, Precision};
 use crate::failure::Failure;
-use crate::files;
 use crate::words::{count, number};
 use crate::write::{self, Known};
+use crate::{files, remarks, show};
 use gyro_runner::Integrator;
 use std::fs;
 use std::path::Path;
@@ -22,7 +22,7 @@ use std::path::Path;
 /// Writes the page in both forms, its figures and its data.
 pub(crate) fn study(study: &Study, machine: &str, folder: &Path) -> Result<(), Failure> {
     let name = &study.lab.name;
-    let page = page(study, machine);
+    let page = page(study, machine, moving(study, folder)?.as_deref());
     for (file, svg) in page.figures() {
         own(&folder.join("images").join(file), svg)?;
     }
@@ -38,6 +38,19 @@ pub(crate) fn study(study: &Study, machine: &str, folder: &Path) -> Result<(), F
         own(&folder.join(file), &text)?;
     }
     Ok(())
+}
+
+/// Writes the page in which the mechanism moves, and returns its name; a run that fails leaves it out.
+fn moving(study: &Study, folder: &Path) -> Result<Option<String>, Failure> {
+    let file = format!("{}-moving.html", study.lab.name);
+    match show::beside(&study.lab.path, &folder.join(&file)) {
+        Ok(()) => Ok(Some(file)),
+        Err(failure @ Failure::Interrupted(_)) => Err(failure),
+        Err(failure) => {
+            remarks::warn(&format!("{file} is left out: {}", failure.words()));
+            Ok(None)
+        }
+    }
 }
 
 /// What the report of a scene, and the index, are written to; none may be a file that somebody else has written.
@@ -69,10 +82,13 @@ fn known(path: &Path) -> Known {
     }
 }
 
-fn page(study: &Study, machine: &str) -> Page {
+fn page(study: &Study, machine: &str, moving: Option<&str>) -> Page {
     let mut page = Page::default();
     let name = &study.lab.name;
     page.heading(1, name.clone());
+    if let Some(moving) = moving {
+        page.frame(moving, format!("{name} as it moves, on a page of its own"));
+    }
     lead(study, machine, &mut page);
     choices(study, &mut page);
     if !study.goals.is_empty() {

@@ -1,5 +1,6 @@
 //! A model and its samples as the page wants them: plain data.
 
+use super::efforts;
 use crate::columns::{self, orientation, scalar};
 use crate::scene::Scene;
 use gyro_model::{
@@ -41,6 +42,7 @@ pub(super) fn mechanism(model: &Model) -> gyro_show::Mechanism {
         links: links(model),
         springs: springs(model),
         loads: loads(model),
+        efforts: efforts::efforts(model),
     }
 }
 
@@ -113,11 +115,12 @@ fn springs(model: &Model) -> Vec<usize> {
 
 fn loads(model: &Model) -> Vec<gyro_show::Load> {
     let load = |force: &gyro_model::Force| match &force.kind {
-        ForceKind::Load { body, point, force: value, frame, .. } => Some(gyro_show::Load {
+        ForceKind::Load { body, point, force: value, torque, frame } => Some(gyro_show::Load {
             name: force.name.clone(),
             body: *body,
             point: model.values(point),
             force: model.values(value),
+            torque: model.values(torque),
             in_body: *frame == LoadFrame::Body,
         }),
         _ => None,
@@ -181,7 +184,7 @@ fn plotted(scene: &Scene, samples: &[Sample]) -> (Vec<Column>, Vec<Reaction>) {
     }
     for (index, input) in model.inputs.iter().enumerate() {
         let unit = columns::input_unit(model, index);
-        let value = |s: &Sample| columns::inputs_at(model, &scene.start.inputs, s.t)[index];
+        let value = |s: &Sample| columns::inputs_at(model, &scene.start, s)[index];
         plots.add(("Inputs", &input.name, "", unit), value);
     }
     plots.energy(model.has_work());

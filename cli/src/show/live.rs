@@ -6,10 +6,10 @@ use crate::failure::Failure;
 use crate::progress;
 use crate::scene::Scene;
 use crate::verify::proved;
-use crate::{columns, remarks};
+use crate::{columns, controllers, remarks};
 use gyro_export::Precision;
 use gyro_model::{Model, parse_decimal, to_f64};
-use gyro_runner::{Integrator, any_varies};
+use gyro_runner::{Integrator, Sample, any_varies};
 use gyro_show::{Live, Setting, Slope};
 use serde_json::Value;
 
@@ -44,6 +44,7 @@ pub(super) fn live(
             "--live: the run in the page holds inputs at their first values until they are set there",
         );
     }
+    controllers::say_left_out(&scene.model, "--live");
     Ok(Live {
         about: serde_json::from_str(&exported.about).map_err(|e| broken(e.to_string()))?,
         module: compiled(&module.name, &exported)?,
@@ -70,7 +71,7 @@ fn settings(of: &[gyro_model::Parameter], unit: impl Fn(usize) -> &'static str) 
 
 fn inputs(scene: &Scene) -> Vec<Setting> {
     let model = &scene.model;
-    let values = columns::inputs_at(model, &scene.start.inputs, 0.0);
+    let values = columns::inputs_at(model, &scene.start, &Sample::default());
     let mut settings = settings(&model.inputs, |n| columns::input_unit(model, n));
     settings.iter_mut().zip(values).for_each(|(setting, value)| setting.value = value);
     settings

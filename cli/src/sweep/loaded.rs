@@ -4,7 +4,9 @@ use super::vocabulary::vocabulary;
 use crate::args::{Effort, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::scene::{self, Scene};
-use crate::{files, inputs};
+use crate::{args, controllers, files, inputs};
+use gyro_model::Model;
+use gyro_runner::Input;
 use gyro_sweep::study::{self, Files, Study, Unreadable, Vocabulary};
 use std::path::{Path, PathBuf};
 
@@ -23,18 +25,25 @@ pub(super) struct Loaded {
     pub(super) name: String,
 }
 
-/// The folder of a study.
-struct Beside<'a>(&'a Path);
+/// The folder of a study, and its model once that is read.
+struct Beside<'a> {
+    folder: &'a Path,
+    model: Option<Model>,
+}
 
 impl Files for Beside<'_> {
     type Error = Failure;
 
     fn model(&mut self, path: &str) -> Result<Vocabulary, Failure> {
-        scene::read_counting_work(&self.0.join(path)).map(|model| vocabulary(&model))
+        let model = scene::read_counting_work(&self.folder.join(path))?;
+        controllers::refuse(&model, "a study")?;
+        Ok(vocabulary(self.model.insert(model)))
     }
 
-    fn table(&mut self, path: &str) -> Result<Vec<[f64; 2]>, String> {
-        inputs::read(&self.0.join(path))
+    fn table(&mut self, input: usize, path: &str) -> Result<Input, String> {
+        let model = self.model.as_ref().expect("inputs are those of a model");
+        let (file, said) = args::table(path);
+        inputs::table(model, input, (&self.folder.join(file), said))
     }
 }
 
@@ -54,7 +63,8 @@ impl Loaded {
     /// As [`Self::new`].
     pub(super) fn of_text(path: &Path, text: String) -> Result<Self, Failure> {
         let folder = path.parent().unwrap_or(Path::new(""));
-        let study = match study::read(&path.display().to_string(), &text, &mut Beside(folder)) {
+        let study = match study::read(&path.display().to_string(), &text, &mut Beside { folder, model: None })
+        {
             Ok(study) => study,
             Err(Unreadable::Study(mistakes)) => return Err(Failure::ModelFile(mistakes)),
             Err(Unreadable::Model(failure)) => return Err(failure),

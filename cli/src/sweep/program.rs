@@ -42,18 +42,40 @@ pub(super) fn program(study: &Study, scene: &Scene, way: Way, is_native: bool) -
     let module = gyro_codegen::generate_functions(&scene.page_name, &scene.page, &functions)
         .map_err(|e| Failure::Usage(e.to_string()))?;
     drop(spinner);
-    let main = match way {
-        Way::Packs => in_packs(&module, &scene.page),
-        Way::Whole => main_by("::gyro_sweep::child::whole", &module, Precision::F64, runs),
+    let (beside, more) = match study.keep.by.is_empty() {
+        true => (String::new(), ""),
+        false => (in_duals(&module), ", in_duals"),
     };
+    let main = match (way, more) {
+        (Way::Packs, _) => in_packs(&module, &scene.page, more),
+        (_, "") => main_by("::gyro_sweep::child::whole", &module, Precision::F64, runs, more),
+        _ => main_by("::gyro_sweep::child::whole_sensitive", &module, Precision::F64, runs, more),
+    } + &beside;
     let main = if is_native { format!("// With all instructions of this processor.\n{main}") } else { main };
     let digest = digest(format!("{main}{}", module.code).as_bytes());
     let path = nested::sweeping(&scene.page, &module, main, is_native)?;
     Ok(Program { path, digest })
 }
 
-/// The lines of a program that runs packs.
-fn in_packs(module: &Module, model: &Model) -> String {
+/// The mechanism in dual numbers, for sensitivities.
+fn in_duals(module: &Module) -> String {
+    let type_name = &module.type_name;
+    let number = "::gyro_sim::Dual<f64, { ::gyro_runner::motion::COLUMNS }>";
+    format!(
+        "
+fn in_duals(values: &[{number}]) -> mechanism::{type_name}<{number}> {{
+    let mut built = mechanism::{type_name}::<{number}>::default();
+    for (index, value) in values.iter().enumerate() {{
+        built.set_parameter(index, *value);
+    }}
+    built
+}}
+"
+    )
+}
+
+/// The lines of a program that runs packs, with what it is told besides.
+fn in_packs(module: &Module, model: &Model, more: &str) -> String {
     let type_name = &module.type_name;
     let fields = model.parameters.iter().enumerate();
     let fields: Vec<String> = fields.map(|(k, one)| format!("{}: values[{k}]", one.name)).collect();
@@ -70,6 +92,7 @@ fn in_packs(module: &Module, model: &Model) -> String {
             ),
         ),
     };
+    let packs = if more.is_empty() { "packs" } else { "packs_sensitive" };
     format!(
         "#[allow(warnings, clippy::all)]
 mod mechanism;
@@ -79,7 +102,7 @@ fn build<T: ::gyro_sim::Scalar>(values: &[T]) -> mechanism::{type_name}<T> {{
 }}
 
 fn main() -> ::std::process::ExitCode {{
-    ::gyro_sweep::child::packs(build::<f64>, build::<::gyro_sim::lanes::f64x8>, {checked})
+    ::gyro_sweep::child::{packs}(build::<f64>, build::<::gyro_sim::lanes::f64x8>, {checked}{more})
 }}
 "
     )

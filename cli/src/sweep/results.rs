@@ -4,6 +4,7 @@
 
 mod figures;
 mod gathered;
+mod linear;
 mod page;
 #[cfg(feature = "parquet")]
 mod parquet;
@@ -62,7 +63,7 @@ fn tables(folder: &Path, loaded: &Loaded, gathered: &mut Gathered) -> Result<Vec
     while let Some(block) = blocks.block()? {
         for (k, numbers, error) in block.rows() {
             source.write(k, &mut values);
-            let (numbers, tracks) = numbers.split_at(loaded.study.numbers.len());
+            let (numbers, tracks) = numbers.split_at(loaded.study.numbers.len() + loaded.study.slopes.len());
             let written = tables::row(&mut table.file, k, [&values, numbers], error);
             written.map_err(|e| unwritable(&path, "written", &e))?;
             #[cfg(feature = "parquet")]

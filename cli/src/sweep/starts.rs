@@ -8,7 +8,7 @@ use crate::scene::{Scene, start};
 use gyro_model::{Attachment, Link, Model, Number, Rational, Tree};
 use gyro_runner::{Coordinates, Integrator, Start};
 use gyro_sweep::study::Study;
-use gyro_sweep::{Draw, Quantity, Target};
+use gyro_sweep::{Draw, Plan, Quantity, Target};
 
 /// The model of a scenario with these values.
 ///
@@ -65,6 +65,33 @@ pub(super) fn assembled(page: &Model, targets: &[Target], values: &[f64]) -> Res
     Ok(start(&model, &assembled))
 }
 
+/// How far apart the starts are that derivatives are taken of, in parts of a target's scale. They are differences of
+/// order 4: what is cut off and what is rounded are both about 1e-12.
+const APART: f64 = 1e-3;
+
+/// The derivatives of a scenario's assembled start by some targets, times their scales: of each the numbers of
+/// positions, velocities and turn references.
+///
+/// # Errors
+/// Why it cannot start nearby.
+pub(super) fn slopes(page: &Model, plan: &Plan, by: &[usize], values: &[f64]) -> Result<Vec<f64>, String> {
+    let mut all = Vec::new();
+    for target in by {
+        let shifted = |parts: f64| {
+            let mut values = values.to_vec();
+            values[*target] += parts * APART * plan.scale(*target);
+            let start = assembled(page, &plan.targets, &values)
+                .map_err(|words| format!("its sensitivities take a start nearby: {words}"))?;
+            Ok::<_, String>([start.positions, start.velocities, start.turn_references].concat())
+        };
+        let [far_below, below, above, far_above] =
+            [shifted(-2.0)?, shifted(-1.0)?, shifted(1.0)?, shifted(2.0)?];
+        let slope = |k: usize| (8.0 * (above[k] - below[k]) - (far_above[k] - far_below[k])) / (12.0 * APART);
+        all.extend((0..above.len()).map(slope));
+    }
+    Ok(all)
+}
+
 /// Whether all scenarios start alike in joint coordinates and all that is kept is read there, so that they run in the
 /// lanes of packs.
 pub(super) fn are_alike(study: &Study, scene: &Scene) -> bool {
@@ -76,7 +103,7 @@ pub(super) fn are_alike(study: &Study, scene: &Scene) -> bool {
     };
     let is_joint = |quantity: &Quantity| matches!(quantity, Quantity::Position(_) | Quantity::Rate(_));
     let is_tree = Tree::of(model).is_open() && model.couplers.is_empty() && model.drivers.is_empty();
-    let is_constant = study.plan.targets.iter().all(|target| !matches!(target, Target::Table(..)));
+    let is_constant = study.plan.targets.iter().all(|target| !matches!(target, Target::Table(_)));
     approach.coordinates == Coordinates::Joint
         && gyro_codegen::lacks_joint_coordinates(model).is_none()
         && is_explicit

@@ -91,7 +91,7 @@ impl Words for Vocabulary {
 mod tests {
     use super::*;
     use crate::columns::{Column, columns};
-    use gyro_runner::{BodySample, JointSample, Sample};
+    use gyro_runner::{BodySample, JointSample, Sample, Start};
 
     /// A sample whose numbers all differ, and for each column its number: names and quantities belong together.
     #[test]
@@ -131,7 +131,7 @@ mod tests {
                 position_violation,
                 ..Sample::default()
             };
-            let table = columns(&model, &[], std::slice::from_ref(&sample));
+            let table = columns(&model, &Start::default(), std::slice::from_ref(&sample));
             let left_out = ["t", "energy error", "velocity violation", "norm violation", "chart switches"];
             let is_shown = |column: &&Column| {
                 !left_out.contains(&column.name.as_str())

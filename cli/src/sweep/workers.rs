@@ -133,8 +133,8 @@ impl Workers<'_> {
         while let Some(places) = take(at_once) {
             let began = Instant::now();
             let blocks: Vec<u64> = places.clone().map(&block).collect();
-            let starts = self.starts(&blocks, &mut source);
-            worker.ask(&Unit { blocks, starts })?;
+            let (starts, slopes) = self.starts(&blocks, &mut source);
+            worker.ask(&Unit { blocks, starts, slopes })?;
             for place in places.clone() {
                 if !send(place, worker.hear()?) {
                     return Ok(());
@@ -149,20 +149,25 @@ impl Workers<'_> {
         Ok(())
     }
 
-    /// Where the scenarios of these blocks start, unless all start alike.
-    fn starts(&self, blocks: &[u64], source: &mut Source<'_>) -> Vec<Result<Start, String>> {
-        let Some(model) = self.assembled else { return Vec::new() };
-        let targets = &self.job.plan.targets;
+    /// Where the scenarios of these blocks start, unless all start alike; for sensitivities with derivatives.
+    fn starts(&self, blocks: &[u64], source: &mut Source<'_>) -> (Vec<Result<Start, String>>, Vec<Vec<f64>>) {
+        let Some(model) = self.assembled else { return Default::default() };
+        let (plan, by) = (&self.job.plan, &self.job.keep.by);
         let scenarios = blocks.iter().flat_map(|block| {
             let (first, count) = self.job.range(*block);
             first..first + u64::from(count)
         });
-        let mut values = vec![0.0; targets.len()];
-        let start = |k| {
+        let mut values = vec![0.0; plan.targets.len()];
+        let mut start = |k| {
             source.write(k, &mut values);
-            starts::assembled(model, targets, &values)
+            let start = starts::assembled(model, &plan.targets, &values)?;
+            Ok((start, starts::slopes(model, plan, by, &values)?))
         };
-        scenarios.map(start).collect()
+        let both = scenarios.map(|k| match start(k) {
+            Ok((start, slopes)) => (Ok(start), slopes),
+            Err(words) => (Err(words), Vec::new()),
+        });
+        both.unzip()
     }
 }
 

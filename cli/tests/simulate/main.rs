@@ -2,8 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod cells;
+mod closed_loops;
+mod controllers;
 mod inputs;
 mod interrupted;
+mod plants;
 mod refusals;
 mod support;
 

@@ -120,6 +120,29 @@ impl<T: Scalar, const N: usize> Controller<T> for TransferFunction<T, N> {
     }
 }
 
+/// A law whose inputs are cut at a least and a largest value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limited<C, T> {
+    /// The law.
+    pub controller: C,
+    /// The least and the largest value.
+    pub limits: [T; 2],
+}
+
+impl<C: Controller<T>, T: Real> Controller<T> for Limited<C, T> {
+    fn sample(&mut self, t: T, outputs: &[T], inputs: &mut [T]) {
+        self.controller.sample(t, outputs, inputs);
+        let [least, largest] = self.limits;
+        for input in inputs {
+            if *input < least {
+                *input = least;
+            } else if *input > largest {
+                *input = largest;
+            }
+        }
+    }
+}
+
 /// A law between converters: `M` outputs and all inputs are rounded to whole multiples of their steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantised<C, T, const M: usize> {

@@ -37,7 +37,7 @@
 
 mod laws;
 
-pub use laws::{Pid, Quantised, StateFeedback, TransferFunction};
+pub use laws::{Limited, Pid, Quantised, StateFeedback, TransferFunction};
 
 use crate::Real;
 
@@ -120,16 +120,21 @@ impl<C: Controller<T>, T: Real, const N: usize> Sampled<C, T, N> {
         self.effect.map_or(sample, |effect| effect.min(sample))
     }
 
+    /// Whether there is something to do at a time.
+    pub fn is_due(&self, t: T) -> bool {
+        self.has_come(t, self.next())
+    }
+
     /// Does what is due: inputs that were computed take effect, and then a sample is taken. Returns whether the inputs
     /// have been set; the solver has to know ([`Solver::system_has_changed`](crate::Solver::system_has_changed)).
     /// Samples that a caller has let pass are not made up for.
     pub fn act(&mut self, t: T, outputs: &[T], inputs: &mut [T; N]) -> bool {
         let mut is_set = self.take_effect(t, inputs);
-        if self.is_due(t, self.period.times(self.number)) {
+        if self.has_come(t, self.period.times(self.number)) {
             self.controller.sample(t, outputs, &mut self.computed);
             // Not from t, which may be a little off.
             self.effect = Some(self.period.times(self.number) + self.delay);
-            while self.is_due(t, self.period.times(self.number)) {
+            while self.has_come(t, self.period.times(self.number)) {
                 self.number += 1;
             }
             is_set |= self.take_effect(t, inputs);
@@ -138,7 +143,7 @@ impl<C: Controller<T>, T: Real, const N: usize> Sampled<C, T, N> {
     }
 
     fn take_effect(&mut self, t: T, inputs: &mut [T; N]) -> bool {
-        let is_due = self.effect.is_some_and(|effect| self.is_due(t, effect));
+        let is_due = self.effect.is_some_and(|effect| self.has_come(t, effect));
         if is_due {
             *inputs = self.computed;
             self.effect = None;
@@ -146,7 +151,7 @@ impl<C: Controller<T>, T: Real, const N: usize> Sampled<C, T, N> {
         is_due
     }
 
-    fn is_due(&self, t: T, at: f64) -> bool {
+    fn has_come(&self, t: T, at: f64) -> bool {
         let t = t.to_f64();
         let rounding = 4.0 * T::EPSILON.to_f64() * libm::fabs(t);
         at - t <= (COINCIDENT * self.period.seconds()).max(rounding)

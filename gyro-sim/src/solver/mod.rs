@@ -5,6 +5,7 @@ mod control;
 mod passages;
 mod past;
 mod poses;
+mod rewind;
 
 use crate::contract::Storage;
 use crate::correct::{check_finite, check_time};
@@ -17,6 +18,7 @@ use passages::Nearness;
 pub use passages::Passage;
 use past::Past;
 use poses::{Approach, Watch};
+pub(crate) use rewind::Mark;
 
 /// A simulation in progress: equations, a method, a correction, the time and the state.
 ///
@@ -51,6 +53,8 @@ pub struct Solver<D, S, T, A, C> {
     is_prepared: bool,
     /// Whether the state is exactly the end of the method's last attempt.
     is_untouched: bool,
+    /// Whether the system is another one than that of the method's last attempt.
+    has_changed: bool,
     /// Whether time and state are known to be finite.
     is_checked: bool,
     /// For mechanisms with singular poses: the states after the last steps.
@@ -108,6 +112,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
             is_kept: false,
             is_prepared: false,
             is_untouched: false,
+            has_changed: false,
             is_checked: false,
             past: Past::new(t, y),
             raw: y.clone(),
@@ -175,7 +180,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
     /// To be called when the model or the equations have changed, for example by a new value of an input: what was
     /// computed from them is discarded.
     pub fn system_has_changed(&mut self) {
-        self.is_untouched = false;
+        (self.is_untouched, self.has_changed) = (false, true);
         self.resumes = false;
         self.past.forget();
         self.leap = None;
@@ -258,19 +263,17 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         A: Method<D, M>,
         C: Correction<D, M>,
     {
-        let (start, y, h) = &self.before;
+        let start = self.before.0;
         if t >= self.t {
             out.as_mut().copy_from_slice(self.y.as_ref());
             return Ok(());
         }
         // What the method holds are the slopes of its last attempt.
-        if !(self.is_kept || self.leap.is_some()) || !(*start..=self.t).contains(&t) {
+        if !(self.is_kept || self.leap.is_some()) || !(start..=self.t).contains(&t) {
             return Err(Error::InvalidEndTime { t: self.t.to_f64(), t_end: t.to_f64() });
         }
-        if !(self.is_prepared || self.leap.is_some()) {
-            let system = System { dynamics: &self.dynamics, model: system };
-            self.method.prepare(system, *start, *h, y, &mut self.statistics.work);
-            self.is_prepared = true;
+        if self.leap.is_none() {
+            self.prepare_interpolation(system);
         }
         self.between(t, out);
         match self.correction.correct(system, t, out) {
@@ -282,6 +285,21 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
                 Ok(())
             }
             outcome => outcome,
+        }
+    }
+
+    /// Prepares the method for states within the last step, once.
+    fn prepare_interpolation<M>(&mut self, system: &M)
+    where
+        D: Ode<M, Scalar = T, State = S>,
+        A: Method<D, M>,
+        C: Correction<D, M>,
+    {
+        if !self.is_prepared {
+            let (start, y, h) = &self.before;
+            let system = System { dynamics: &self.dynamics, model: system };
+            self.method.prepare(system, *start, *h, y, &mut self.statistics.work);
+            self.is_prepared = true;
         }
     }
 
@@ -322,9 +340,11 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         C: Correction<D, M>,
     {
         if self.is_kept {
-            self.resumes = self.method.carry() && self.is_untouched;
+            // Slopes of two systems say nothing of the rates of either.
+            self.resumes = !self.has_changed && self.method.carry() && self.is_untouched;
             self.is_kept = false;
         }
+        self.has_changed = false;
         let system = System { dynamics: &self.dynamics, model: system };
         self.method.attempt(system, self.t, h, &self.y, self.resumes, &mut self.statistics.work);
         self.resumes = true;

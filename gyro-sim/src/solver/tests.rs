@@ -306,3 +306,38 @@ fn what_is_not_finite_is_an_error_at_once() {
         );
     }
 }
+
+/// ẏ = u − y, with the input u as the model.
+struct Lag;
+
+impl Ode<f64> for Lag {
+    type Scalar = f64;
+    type State = [f64; 1];
+
+    fn derivative(&self, input: &f64, _: f64, y: &[f64; 1], dy: &mut [f64; 1]) {
+        dy[0] = input - y[0];
+    }
+}
+
+#[test]
+fn inputs_that_jump_are_no_fast_rates() {
+    fn rate<A: Method<Lag, f64>>(method: A) -> f64 {
+        let mut solver = Solver::new(Lag, method, 0.0, &[0.0]);
+        let mut input = 1.0;
+        for k in 1_u32..=1000 {
+            solver.advance_to(&input, f64::from(k) * 0.05).unwrap();
+            input = -input;
+            // Now and then nothing changes, so that there are estimates.
+            if k % 7 != 0 {
+                solver.system_has_changed();
+            } else {
+                input = -input;
+            }
+        }
+        assert_eq!(solver.statistics().limited_by_stability, 0);
+        solver.statistics().fastest_rate
+    }
+    let rates = [rate(Tsit5::new(&[0.0])), rate(Dop853::new(&[0.0]))];
+    // Differences of a hundred roundings have an error of some per cent.
+    assert!(rates.iter().all(|rate| (rate - 1.0).abs() < 0.1), "{rates:?}");
+}

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod compiled;
+mod contacts;
 mod kernels;
 mod pair;
 mod proof;

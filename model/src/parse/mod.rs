@@ -2,6 +2,7 @@
 
 mod bodies;
 mod computed;
+mod controllers;
 mod couplings;
 mod driven;
 mod expression;
@@ -33,7 +34,7 @@ use toml::de::DeTable;
 
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::directions;
-use crate::validate::{coordinate_problems, number_problems, topology_problems};
+use crate::validate::{coordinate_problems, number_problems, settings_problems, topology_problems};
 use crate::{Model, Number};
 use reader::Reader;
 
@@ -148,6 +149,7 @@ fn check(reader: &mut Reader<'_>, model: &mut Model) {
     start::misplaced(reader, model);
     if reader.is_clean() {
         start::check(reader, model);
+        reader.add_problems(settings_problems(model));
     }
 }
 
@@ -175,6 +177,7 @@ fn syntax_help(message: &str, written: &str) -> &'static str {
             Some(("driver", _)) => "write [[driver]] above each driver",
             Some(("force", _)) => "write [[force]] above each force",
             Some(("output", _)) => "write [[output]] above each output",
+            Some(("controller", _)) => "write [[controller]] above each controller",
             _ => "a key may appear only once: remove one of the two",
         }
     } else if written.starts_with(',') {

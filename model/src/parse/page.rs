@@ -7,11 +7,11 @@ use super::names;
 use super::numbers::{plain_number, positive};
 use super::reader::Reader;
 use super::section::{Section, keyword};
-use super::{bodies, couplings, forces, joints, outputs, parameters, point_masses};
+use super::{bodies, controllers, couplings, forces, joints, outputs, parameters, point_masses};
 use crate::validate::{Owner, Place};
 use crate::{Method, Model, Rational, Simulation, to_f64};
 
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 15] = [
     "format",
     "name",
     "gravity",
@@ -26,6 +26,7 @@ const KEYS: [&str; 14] = [
     "driver",
     "force",
     "output",
+    "controller",
 ];
 const SIMULATION_KEYS: [&str; 5] = ["t_end", "step", "correct_every", "sample_every", "method"];
 const METHODS: [(&str, Method); 2] = [("partitioned", Method::Partitioned), ("direct", Method::Direct)];
@@ -47,6 +48,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let drivers = couplings::drivers(reader, &page);
     let forces = forces::read(reader, &page);
     let outputs = outputs::read(reader, &page);
+    let controllers = controllers::read(reader, &page, &outputs);
     let redundant = Vec::new();
     let mut model = Model {
         name,
@@ -61,6 +63,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         drivers,
         forces,
         outputs,
+        controllers,
         redundant,
         counts_work,
         functions,

@@ -78,7 +78,7 @@ impl<'t> Reader<'t> {
     /// Takes a name of something that stands in results and messages by its name alone: joints, couplers, drivers and
     /// outputs share their names.
     pub(super) fn take(&mut self, place: Place, span: &Range<usize>, name: &str, what: &'static str) {
-        if matches!(what, "body" | "force") {
+        if matches!(what, "body" | "force" | "controller") {
             return;
         }
         let earlier = self.taken.get(name).filter(|(_, kind)| *kind != what).cloned();
@@ -221,7 +221,7 @@ impl<'t> Reader<'t> {
     }
 
     /// Where a place is, or the nearest thing around it that the model file has.
-    fn span(&self, place: Place) -> Range<usize> {
+    pub(super) fn span(&self, place: Place) -> Range<usize> {
         let around = std::iter::successors(Some(place), |p| p.fallback());
         around.filter_map(|p| self.spans.get(&p)).next().cloned().unwrap_or_default()
     }

@@ -49,6 +49,7 @@ impl<'t> Section<'t> {
         match self.owner {
             Owner::Force(_) => "a force",
             Owner::Output(_) => "an output",
+            Owner::Controller(_) => "a controller",
             _ => "something",
         }
     }

@@ -4,7 +4,7 @@
 //! One word may stand for several of ours; which is meant depends on the keys that are known in its place.
 
 /// Words of others, each with those of ours that it may stand for, the likeliest first.
-const WORDS: [(&[&str], &[&str]); 63] = [
+const WORDS: [(&[&str], &[&str]); 64] = [
     // Kinds of joint.
     (&["hinge", "pin", "continuous", "rotary", "rotational", "rotation", "pivot_joint", "r"], &["revolute"]),
     (&["slide", "slider", "sliding", "translational", "linear", "prism", "p"], &["prismatic"]),
@@ -52,6 +52,7 @@ const WORDS: [(&[&str], &[&str]); 63] = [
     (&["drivers", "motions"], &["driver"]),
     (&["params", "constants", "variables"], &["parameters"]),
     (&["controls", "signals"], &["inputs"]),
+    (&["controllers", "control", "regulator", "pid"], &["controller"]),
     (&["settings", "options", "option", "solver"], &["simulation"]),
     (&["version"], &["format"]),
     (&["dt", "timestep", "time_step", "h", "max_step_size"], &["step"]),

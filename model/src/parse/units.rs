@@ -80,7 +80,7 @@ pub(super) fn of_place(place: Place) -> Option<&'static str> {
 fn of_key(key: &str) -> Option<&'static str> {
     let unit = match key {
         "gravity" => "m/s2",
-        "t_end" | "step" | "correct_every" | "sample_every" => "s",
+        "t_end" | "step" | "correct_every" | "sample_every" | "period" | "delay" => "s",
         "mass" => "kg",
         "inertia" | "xx" | "yy" | "zz" | "xy" | "xz" | "yz" => "kg.m2",
         "position" | "point" | "at" | "displacement" | "x" | "y" | "length" | "free_length"

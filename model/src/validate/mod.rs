@@ -1,6 +1,7 @@
 //! What must hold of a model beyond its syntax. Problems name places of the model file; only the parser knows their
 //! spans.
 
+mod controllers;
 mod coordinates;
 mod directions;
 mod forces;
@@ -9,6 +10,7 @@ mod numbers;
 mod rules;
 mod topology;
 
+pub(crate) use controllers::settings_problems;
 pub(crate) use coordinates::problems as coordinate_problems;
 pub use inertia::is_inertia;
 pub(crate) use numbers::problems as number_problems;
@@ -48,6 +50,7 @@ pub(crate) enum Owner {
     Force(usize),
     ForceEnd(usize, Side),
     Output(usize),
+    Controller(usize),
 }
 
 /// One of the two ends of a joint, a coupler or a link.

@@ -2,7 +2,7 @@
 
 use num_traits::{Signed, Zero};
 
-use super::{Owner, Place, Problem, directions, forces, inertia, shown};
+use super::{Owner, Place, Problem, controllers, directions, forces, inertia, shown};
 use crate::number::{SIZE_EXPONENT, in_range};
 use crate::{Body, Coupler, Joint, JointKind, Model, Parameter};
 
@@ -29,6 +29,9 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     found.extend(model.couplers.iter().enumerate().filter_map(|(index, c)| ratio(model, index, c)));
     found.extend(
         model.forces.iter().enumerate().flat_map(|(index, force)| forces::problems(model, index, force)),
+    );
+    found.extend(
+        model.controllers.iter().enumerate().flat_map(|(index, c)| controllers::problems(model, index, c)),
     );
     found
 }

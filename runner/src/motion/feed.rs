@@ -6,7 +6,7 @@
 //! sees more than one piece.
 
 use super::course::Course;
-use super::lens::{Moving, MovingInputs};
+use super::lens::{Lens, Moving, MovingInputs};
 use crate::Input;
 use gyro_sim::{Clearance, Correction, Error, Jacobian, Mechanism, Ode, Scalar};
 use std::cell::{Ref, RefCell};
@@ -67,6 +67,17 @@ impl<L, M: Mechanism> Fed<L, M> {
     /// From now on the inputs follow their course, in a copy of the mechanism.
     pub(super) fn follow(&mut self, mechanism: M) {
         self.feed = Some(Box::new(Feed { mechanism: RefCell::new(mechanism), pieces: Vec::new() }));
+    }
+
+    /// An input changes that follows no course.
+    pub(super) fn set_input(&mut self, index: usize, value: f64)
+    where
+        L: Lens<M>,
+    {
+        self.lens.set_input(index, value);
+        if let Some(feed) = &mut self.feed {
+            feed.mechanism.get_mut().set_input(index, M::Scalar::constant(value));
+        }
     }
 
     /// A knot has been reached: from here on other pieces hold.

@@ -124,7 +124,7 @@ macro_rules! motion {
                 Ok(())
             }
             fn set_input(&mut self, index: usize, value: f64) {
-                self.0.dynamics_mut().lens.set_input(index, value);
+                self.0.dynamics_mut().set_input(index, value);
                 self.0.system_has_changed();
             }
             fn follow(&mut self, inputs: Option<M>, course: Course) {

@@ -67,6 +67,26 @@ const tests = {
     return page;
   },
 
+  async 'arcs show the torques that accelerate'(browser) {
+    const page = await open(browser, at('torsion'));
+    await page.keyboard.press('a');
+    const { torque, needed, most } = await page.evaluate(() => {
+      const { picture, scenes: [scene], clock } = globalThis.gyroPage;
+      clock.seek(0.3);
+      picture.draw();
+      const laws = picture.arrows.drawn.filter(({ source }) => source.turns);
+      const rate = scene.columns.find(({ group }) => group === 'Rates').values;
+      // About the axis, z: J α, with α from the rates around.
+      const sums = (t) => laws.reduce((sum, { source }) => sum + source.at(t)[0][1][2], 0);
+      const k = scene.time.findIndex((t) => t > 0.3);
+      const needed = 0.02 * (rate[k + 1] - rate[k - 1]) / (scene.time[k + 1] - scene.time[k - 1]);
+      return { torque: sums(scene.time[k]), needed, most: laws.filter(({ arrows: [arc] }) => arc.visible).length };
+    });
+    assert.ok(Math.abs(torque - needed) < 1e-3 * Math.abs(needed) && Math.abs(needed) > 0.1, `${torque} ${needed}`);
+    assert.equal(most, 2, 'a spring and a damper');
+    return page;
+  },
+
   async 'a click selects a body and shows its numbers'(browser) {
     const page = await open(browser, at('gyroscope'));
     // A point of the picture where there is a moving body, found by asking all over it.

@@ -43,6 +43,11 @@ impl Layout {
         self.columns[index]
     }
 
+    /// The place of a target that is a start.
+    pub(super) fn start_of(&self, target: usize) -> Option<usize> {
+        self.starts.iter().find(|(own, _)| *own == target).map(|(_, place)| *place)
+    }
+
     /// The joint state in which a scenario starts.
     pub(super) fn write_start(&self, values: &[f64], x: &mut Vec<f64>) {
         x.clone_from(&self.start);
@@ -51,19 +56,24 @@ impl Layout {
 }
 
 /// The joint state of a maximal start.
-fn joint_start<M: JointSpace<Scalar: Real>>(mechanism: &M, start: &Start) -> M::Joints {
+pub(super) fn joint_start<M: JointSpace<Scalar: Real>>(mechanism: &M, start: &Start) -> M::Joints {
     let (mut y, mut x) = (mechanism.start(), mechanism.joint_start());
-    let known = start.positions.iter().chain(&start.velocities);
-    y.as_mut().iter_mut().zip(known).for_each(|(y, known)| *y = Scalar::constant(*known));
-    let references = y.as_ref().len() - start.turn_references.len();
-    let references = y.as_mut()[references..].iter_mut().zip(&start.turn_references);
-    references.for_each(|(y, angle)| *y = Scalar::constant(*angle));
+    let known = start.positions.iter().chain(&start.velocities).chain(&start.turn_references);
+    write_start(start, known.map(|value| Scalar::constant(*value)), y.as_mut());
     mechanism.to_joints(Scalar::constant(0.0), &y, &mut x);
     x
 }
 
+/// Writes a maximal state: what is known of it are positions, velocities and turn references; work is between.
+pub(super) fn write_start<T>(start: &Start, known: impl Iterator<Item = T>, y: &mut [T]) {
+    let references = y.len() - start.turn_references.len();
+    let moving = start.positions.len() + start.velocities.len();
+    let places = (0..moving).chain(references..y.len());
+    places.zip(known).for_each(|(place, value)| y[place] = value);
+}
+
 /// A joint's coordinate among the coordinates of all joints.
-fn flat<M: JointSpace>(mechanism: &M, joint: usize, coordinate: usize) -> usize {
+pub(super) fn flat<M: JointSpace>(mechanism: &M, joint: usize, coordinate: usize) -> usize {
     let joints = mechanism.description().joints;
     joints[..joint].iter().map(|joint| joint.coordinates.len()).sum::<usize>() + coordinate
 }

@@ -63,7 +63,7 @@ where
     G: Fn(&[f64x8]) -> P,
     C: Fn(&[f64]) -> Result<(), String>,
 {
-    fn run(&mut self, block: &mut Block, _: &[Result<Start, String>]) {
+    fn run(&mut self, block: &mut Block, _: &[Result<Start, String>], _: &[Vec<f64>]) {
         let Approach { tolerance, integrator, .. } = self.common.job.approach;
         if tolerance.is_none() {
             let lanes = LANES as u32;

@@ -1,5 +1,7 @@
 //! Random studies against a loop over the runner that knows nothing of plans, blocks or lanes.
 
+mod sensitive;
+
 use super::{Job, Unit, answer, packs, whole};
 use crate::record::{self, Block};
 use crate::{Axis, Distribution, Draw, Keep, Keeper, Passage, Plan, Quantity, Sampling, Source, Target};
@@ -103,8 +105,8 @@ fn keep(level: f64) -> Keep {
         finals: vec![0],
         extremes: vec![1],
         passages: vec![Passage { column: 0, level, rises: true }],
-        estimate: false,
         series: vec![2],
+        ..Keep::default()
     }
 }
 
@@ -194,6 +196,7 @@ proptest! {
             let unit = |blocks: &[u64]| Unit {
                 blocks: blocks.to_vec(),
                 starts: blocks.iter().flat_map(|block| starts(*block)).collect(),
+                ..Unit::default()
             };
             chunks.map(unit).collect()
         };
@@ -265,7 +268,7 @@ proptest! {
         let approach = Approach { integrator, tolerance: Some(tolerance), budget, ..job.approach };
         let settings = Settings { t_end, sample_every: job.settings.sample_every / 3.0, ..job.settings };
         let job = Job { approach, settings, ..job };
-        let units = [Unit { blocks: (0..job.blocks()).collect(), starts: Vec::new() }];
+        let units = [Unit { blocks: (0..job.blocks()).collect(), ..Unit::default() }];
         let mut source = Source::new(&job.plan);
         let mut values = vec![0.0; job.plan.targets.len()];
         let mut parameters = Vec::new();
@@ -296,7 +299,7 @@ fn what_cannot_be_is_a_row_with_its_error_and_disturbs_no_other() {
     let approach = Approach { coordinates: Coordinates::Joint, ..Approach::default() };
     let (parameters, start) = (nominal(), start([0.000_125, 0.0, 0.0]));
     let job = Job { plan, keep: keep(1.0), settings, approach, parameters, start, block: 24, measure: None };
-    let all = blocks(&job, &[Unit { blocks: vec![0], starts: Vec::new() }], true);
+    let all = blocks(&job, &[Unit { blocks: vec![0], ..Unit::default() }], true);
     assert_eq!(all[0].errors.len(), 5);
     for (k, numbers, error) in all[0].rows() {
         assert_eq!(error, (k < 5).then_some("no"));
@@ -317,7 +320,7 @@ fn starts_belong_to_their_scenarios() {
         let all = blocks.iter().flat_map(|block| 5 * block..(5 * block + 5).min(17));
         all.map(|k| Err(format!("scenario {k}"))).collect()
     };
-    let unit = |blocks: &[u64]| Unit { blocks: blocks.to_vec(), starts: starts(blocks) };
+    let unit = |blocks: &[u64]| Unit { blocks: blocks.to_vec(), starts: starts(blocks), ..Unit::default() };
     let found = blocks(&job, &[unit(&[3, 1]), unit(&[0]), unit(&[2])], false);
     let rows: Vec<_> =
         found.iter().flat_map(Block::rows).map(|(k, _, error)| (k, error.map(str::to_owned))).collect();
@@ -348,7 +351,7 @@ fn speed() {
     let (parameters, start) = (nominal(), start([0.000_125, 0.0, 0.0]));
     let job =
         Job { plan, keep: keep(1.0), settings, approach, parameters, start, block: 1024, measure: None };
-    let unit = [Unit { blocks: vec![0], starts: Vec::new() }];
+    let unit = [Unit { blocks: vec![0], ..Unit::default() }];
     let mut source = Source::new(&job.plan);
     let (mut values, mut parameters) = (vec![0.0; 3], Vec::new());
     let mut scalar = || {

@@ -36,7 +36,7 @@ where
     K: MotionBuilder<M>,
     B: Fn(&[f64]) -> (M, K),
 {
-    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>]) {
+    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], _: &[Vec<f64>]) {
         let common = &mut self.common;
         for row in 0..block.count {
             common.draw(block.first + u64::from(row));

@@ -1,8 +1,9 @@
 //! What is kept of each scenario.
 
 use super::reader::{Item, Reader, Section, instead};
-use super::{Named, Vocabulary};
-use crate::{Keep, Passage, Quantity};
+use super::{Named, RunOptions, Vocabulary};
+use crate::{Keep, Passage, Quantity, Target};
+use gyro_runner::{Coordinates, Integrator};
 
 /// What a study keeps, with names and units.
 #[derive(Debug, Default)]
@@ -12,9 +13,11 @@ pub(super) struct Kept {
     pub(super) series: Vec<(String, String)>,
     /// How many of the series are for quantiles.
     pub(super) quantiles: usize,
+    /// Names of the derivatives.
+    pub(super) slopes: Vec<(String, String)>,
 }
 
-const KEYS: [&str; 6] = ["final", "extremes", "passages", "quantiles", "series", "estimate"];
+const KEYS: [&str; 7] = ["final", "extremes", "passages", "quantiles", "series", "estimate", "sensitivities"];
 
 /// Reads `[keep]`; `None` after a mistake.
 pub(super) fn read(reader: &mut Reader, whole: &Section<'_>, vocabulary: &Vocabulary) -> Option<Kept> {
@@ -51,6 +54,57 @@ pub(super) fn read(reader: &mut Reader, whole: &Section<'_>, vocabulary: &Vocabu
         whole.wrong(reader, "keep", ["nothing is kept", "empty", &format!("write {example}")]);
     }
     (reader.mistakes.len() == before).then_some(kept)
+}
+
+impl Kept {
+    /// Has what is kept differentiated by all that varies, if the study says so.
+    pub(super) fn sensitivities(
+        &mut self,
+        reader: &mut Reader,
+        whole: &Section<'_>,
+        (targets, names): (&[Target], &[(String, String)]),
+        run: &RunOptions,
+    ) {
+        let Some(keep) = whole.get("keep").and_then(|item| item.section(reader, "[keep]", &KEYS)) else {
+            return;
+        };
+        if keep.get("sensitivities").and_then(|item| item.flag(reader)) != Some(true) {
+            return;
+        }
+        let n = self.numbers.len() - usize::from(self.keep.estimate);
+        let of_violation = |column: &usize| self.keep.columns[*column] == Quantity::Violation;
+        let kept = self.keep.finals.iter().chain(&self.keep.extremes);
+        let is_rounding =
+            kept.chain(self.keep.passages.iter().map(|passage| &passage.column)).any(of_violation);
+        let words = if targets.is_empty() {
+            Some(["nothing varies", "by what?", "write vary = [...], or remove this"])
+        } else if targets.iter().any(|target| matches!(target, Target::Table(_))) {
+            Some(["there is no derivative by the number of a table", "with `tables`", "remove this"])
+        } else if n == 0 {
+            let help = "write final, extremes or passages; quantiles and series have no derivatives";
+            Some(["nothing is kept that has derivatives", "of what?", help])
+        } else if is_rounding {
+            let help = "keep `constraint violation` as a series";
+            Some(["a constraint's violation is rounding", "it has no derivatives", help])
+        } else if run.coordinates != Coordinates::Joint {
+            let help = "write run = { coordinates = \"joint\" }";
+            Some(["sensitivities are computed in joint coordinates", "in maximal ones", help])
+        } else if run.integrator == Integrator::Rodas4 {
+            let help = "write integrator = \"dop853\", \"tsit5\" or \"rk4\"";
+            Some(["sensitivities are computed by explicit methods", "by rodas4", help])
+        } else {
+            None
+        };
+        if let Some(words) = words {
+            keep.wrong(reader, "sensitivities", words);
+            return;
+        }
+        self.keep.by = (0..targets.len()).collect();
+        let pairs = self.numbers[..n]
+            .iter()
+            .flat_map(|(number, _)| names.iter().map(move |(target, _)| format!("d {number} / d {target}")));
+        self.slopes = pairs.map(|name| (name, String::new())).collect();
+    }
 }
 
 fn list<'t>(reader: &mut Reader, item: Item<'t>) -> Option<Vec<Item<'t>>> {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::{Distribution, Draw};
+use gyro_runner::Between;
 
 struct Bench;
 
@@ -22,8 +23,13 @@ impl Files for Bench {
         })
     }
 
-    fn table(&mut self, path: &str) -> Result<Vec<[f64; 2]>, String> {
-        if path == "a.csv" { Ok(vec![[0.0, 1.0], [1.0, 2.0]]) } else { Err("no such file".to_owned()) }
+    fn table(&mut self, input: usize, path: &str) -> Result<Input, String> {
+        let rows = vec![[0.0, 1.0], [1.0, 2.0]];
+        if path == "a.csv" {
+            Ok(Input::new(input, rows, Between::Held))
+        } else {
+            Err("no such file".to_owned())
+        }
     }
 }
 
@@ -79,7 +85,21 @@ fn everything_can_be_said() {
     assert_eq!((study.series.len(), study.quantiles), (2, 1));
     assert_eq!(study.keep.numbers(), names.len());
     assert_eq!(study.targets[3].0, "hinge start");
-    assert!(matches!(&study.plan.targets[2], Target::Table(0, tables) if tables.len() == 2));
+    assert!(
+        matches!(&study.plan.targets[2], Target::Table(tables) if tables.len() == 2 && tables[0].index == 0)
+    );
+}
+
+#[test]
+fn derivatives_are_by_all_that_varies() {
+    let study = study(&format!(
+        "{HEAD}run = {{ coordinates = \"joint\" }}\n\
+         keep = {{ final = \"hinge\", extremes = \"hinge rate\", estimate = true, sensitivities = true }}\n\
+         vary = [{{ parameter = \"mass\", within = 0.1 }}, {{ start = \"hinge\", values = [0, 1] }}]"
+    ));
+    assert_eq!((study.keep.by.len(), study.keep.slopes(), study.slopes.len()), (2, 6, 6));
+    assert_eq!(study.slopes[1].0, "d hinge final / d hinge start");
+    assert_eq!(study.keep.width(5), 4 + 6);
 }
 
 #[test]
@@ -97,6 +117,15 @@ fn within_is_about_the_models_value() {
 #[test]
 fn mistakes_name_their_line_and_the_cure() {
     let vary = |how: &str| format!("{HEAD}{KEEP}vary = [{{ parameter = \"mass\", {how} }}]");
+    let sensitive = |run: &str, how: &str| {
+        let keep = KEEP.replace('}', ", sensitivities = true }");
+        let run = if run.is_empty() {
+            String::new()
+        } else {
+            format!("run = {{ coordinates = \"joint\", {run} }}\n")
+        };
+        format!("{HEAD}{keep}vary = [{{ parameter = \"mass\", {how} }}]\n{run}")
+    };
     for (text, place, words) in [
         (vary("unifrom = [1, 2]"), "s.toml:5", "write `uniform`"),
         (vary("uniform = [2, 1]"), "s.toml:5", "write the smaller number first"),
@@ -125,6 +154,20 @@ fn mistakes_name_their_line_and_the_cure() {
         (format!("{HEAD}{KEEP}vary = [{{ input = \"motor\", tables = \"b\" }}]"), "s.toml:5", "no such file"),
         (format!("{HEAD}vary = []\nkeep = {{ }}"), "s.toml:5", "nothing is kept"),
         (format!("{HEAD}vary = []\n{KEEP}").replace("final", "passages"), "s.toml:5", "an array of tables"),
+        (sensitive("", "uniform = [0, 1]"), "s.toml:4", "write run = { coordinates = \"joint\" }"),
+        (
+            sensitive("integrator = \"rodas4\"", "uniform = [0, 1]"),
+            "s.toml:4",
+            "write integrator = \"dop853\"",
+        ),
+        (
+            sensitive("", "tables = \"a.csv\"").replace("parameter = \"mass\"", "input = \"motor\""),
+            "s.toml:4",
+            "no derivative",
+        ),
+        (sensitive("", "uniform = [0, 1]").replace("final", "series"), "s.toml:4", "write final, extremes"),
+        (sensitive("", "").replace("{ parameter = \"mass\",  }", ""), "s.toml:4", "nothing varies"),
+        (sensitive("", "uniform = [0, 1]").replace("true", "1"), "s.toml:4", "true or false"),
     ] {
         let Err(Unreadable::Study(mistakes)) = read("s.toml", &text, &mut Bench) else {
             panic!("no mistake in\n{text}")

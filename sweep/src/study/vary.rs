@@ -187,8 +187,8 @@ impl Varied {
         };
         let mut tables = Vec::new();
         for (path, span) in item.texts(reader).unwrap_or_default() {
-            match files.table(&path) {
-                Ok(rows) => tables.push(rows),
+            match files.table(index, &path) {
+                Ok(table) => tables.push(table),
                 Err(words) => {
                     let help =
                         "write the path of a CSV file, seen from the study, with columns time and value";
@@ -198,7 +198,7 @@ impl Varied {
         }
         #[expect(clippy::cast_precision_loss, reason = "a number of files")]
         let rows = (0..tables.len()).map(|k| vec![k as f64]).collect();
-        self.targets[target] = Target::Table(index, tables);
+        self.targets[target] = Target::Table(tables);
         self.axes.push(Axis { targets: vec![target], rows });
     }
 }

@@ -2,6 +2,7 @@
 
 use super::super::loaded::Loaded;
 use super::figures::{self, Map, Points};
+use super::linear::Linear;
 use crate::words::{count, number, table};
 use gyro_sweep::{Indices, IndicesOf, Sampling};
 use std::collections::BTreeMap;
@@ -28,6 +29,7 @@ pub(super) struct Gathered {
     /// Of each point of a grid of two axes its kept numbers.
     cells: Option<Vec<Vec<f64>>>,
     extremes: Vec<[f64; 2]>,
+    pub(super) linear: Option<Linear>,
 }
 
 impl Gathered {
@@ -48,11 +50,16 @@ impl Gathered {
             indices: is_saltelli.then(|| Indices::new(study.numbers.len(), plan.draws.len())),
             cells: is_map.then(Vec::new),
             extremes: vec![[f64::INFINITY, f64::NEG_INFINITY]; study.numbers.len()],
+            linear: Linear::new(loaded),
         }
     }
 
     pub(super) fn add(&mut self, k: u64, values: &[f64], numbers: &[f64], error: Option<&str>) {
         self.scenarios += 1;
+        let (numbers, slopes) = numbers.split_at(self.extremes.len());
+        if let Some(linear) = &mut self.linear {
+            linear.add(k, values, numbers, slopes);
+        }
         if let Some(words) = error {
             self.failed += 1;
             let kind = kind(words);
@@ -107,6 +114,9 @@ impl Gathered {
             vec![name.clone(), format!("from {} to {} {unit}", number(*low, 5), number(*high, 5))]
         });
         text += &table(&rows.collect::<Vec<_>>());
+        if let Some((title, rows)) = self.linear.as_ref().and_then(|linear| linear.rows(loaded)) {
+            text += &format!("{title}:\n{}", table(&rows));
+        }
         if self.failed > 0 {
             text += &format!("{} of {} failed\n", self.failed, count(self.scenarios, "scenario"));
             for (kind, times) in &self.errors {

@@ -38,7 +38,8 @@ impl Table {
         let file = replaced.file.get_ref().try_clone();
         let file = BufWriter::new(file.map_err(|e| unwritable(path, "written", &e))?);
         let study = &loaded.study;
-        let names: Vec<String> = study.targets.iter().chain(&study.numbers).map(column).collect();
+        let names: Vec<String> =
+            study.targets.iter().chain(&study.numbers).chain(&study.slopes).map(column).collect();
         let writer = writer(file, &names, loaded, head).map_err(|e| failed(path, &e))?;
         let numbers = vec![(Vec::new(), Vec::new()); names.len()];
         Ok(Self { replaced, writer, scenarios: Vec::new(), numbers, errors: (Vec::new(), Vec::new()) })

@@ -16,7 +16,7 @@ pub(super) fn head(out: &mut impl Write, loaded: &Loaded, head: &Head) -> io::Re
     writeln!(out, "# {} scenarios, seed {}", head.scenarios, head.seed)?;
     writeln!(out, "# gyro-sim {}, program {}, job {}", head.commit, head.program, head.job)?;
     let study = &loaded.study;
-    let names = study.targets.iter().chain(&study.numbers).map(column);
+    let names = study.targets.iter().chain(&study.numbers).chain(&study.slopes).map(column);
     let names = std::iter::once("scenario".to_owned()).chain(names).chain(["error".to_owned()]);
     writeln!(out, "{}", names.map(|name| quoted(&name)).collect::<Vec<_>>().join(","))
 }

@@ -1,11 +1,15 @@
-// Forces as arrows: weight, springs and dampers, loads, reactions where the run has them. All are to one scale.
+// Forces as arrows: weight, springs and dampers, loads and motors, reactions where the run has them. Torques are arcs about
+// their axis. Forces are all to one scale, and so are torques.
 import { Vector3 } from 'three';
 import { poseAt, valueAt } from '../data.js';
 import { add, cross, distance, dot, inGlobal, length, scale, turn, unit } from '../vector.js';
+import { alongJoints } from './efforts.js';
 import { looks } from './forms.js';
-import { arrow } from './solids.js';
+import { arc, arrow } from './solids.js';
 
 const LONGEST = 0.32;
+// Of arcs, so that a motor's goes around a spring's.
+const RADII = { link: 0.085, load: 0.11 };
 const COLOURS = { weight: '#8a8f98', link: '#2e9e5b', load: '#d98a1f', reaction: '#c8403a' };
 
 // The force with which a spring and damper pulls at its second end, and that end's place.
@@ -39,7 +43,12 @@ function sources(scene) {
       const pose = poseAt(scene, load.body, t);
       return [[inGlobal(pose, load.point), load.in_body ? turn(pose, load.force) : load.force]];
     } });
+    found.push({ kind: 'load', turns: true, at: (t) => {
+      const pose = poseAt(scene, load.body, t);
+      return [[inGlobal(pose, load.point), load.in_body ? turn(pose, load.torque) : load.torque]];
+    } });
   }
+  found.push(...alongJoints(scene));
   for (const { joint, column } of scene.reactions) {
     const [first, second] = mechanism.joints[joint].ends;
     const parts = scene.columns.slice(column, column + 3);
@@ -72,14 +81,15 @@ export class Arrows {
   }
 
   make() {
-    let most = 0;
+    // The largest force and the largest torque.
+    this.most = { false: 0, true: 0 };
     this.drawn = this.all.flatMap(({ scene }) => sources(scene).map((source) => {
-      for (const t of looks(scene, 100)) for (const [, force] of source.at(t)) most = Math.max(most, Math.sqrt(dot(force, force)) || 0);
-      const arrows = Array.from({ length: source.twice ? 2 : 1 }, () => arrow(COLOURS[source.kind]));
+      const turns = Boolean(source.turns);
+      for (const t of looks(scene, 100)) for (const [, force] of source.at(t)) this.most[turns] = Math.max(this.most[turns], length(force) || 0);
+      const arrows = Array.from({ length: source.twice ? 2 : 1 }, () => (turns ? arc(COLOURS[source.kind], RADII[source.kind]) : arrow(COLOURS[source.kind])));
       arrows.forEach((each) => { each.traverse((part) => { part.raycast = () => {}; }); this.world.add(each); });
       return { source, arrows };
     }));
-    this.most = most || 1;
   }
 
   show(t) {
@@ -87,7 +97,7 @@ export class Arrows {
     for (const { source, arrows } of this.drawn) {
       source.at(t).forEach(([at, force], k) => {
         // Small forces are not lost beside large ones: the root.
-        const long = LONGEST * Math.sqrt(length(force) / this.most);
+        const long = LONGEST * Math.sqrt(length(force) / (this.most[Boolean(source.turns)] || 1));
         arrows[k].userData.point(new Vector3(...at).divideScalar(this.size), new Vector3(...force), long);
       });
     }

@@ -249,3 +249,29 @@ export function arrow(colour) {
   };
   return group;
 }
+
+// A torque: part of a circle about its axis, with a head.
+export function arc(colour, radius) {
+  const [SIDES, STEPS] = [8, 60];
+  const material = new MeshStandardMaterial({ color: colour, roughness: 0.6, emissive: colour, emissiveIntensity: 0.25 });
+  const circle = new Curve();
+  circle.getPoint = (part, point = new Vector3()) => point.set(radius * Math.cos(2 * Math.PI * part), radius * Math.sin(2 * Math.PI * part), 0);
+  const group = new Group();
+  const shaft = mesh(new TubeGeometry(circle, STEPS, 0.007, SIDES), material);
+  const head = mesh(new ConeGeometry(0.02, 0.05, 16), material);
+  for (const part of [shaft, head]) part.castShadow = false;
+  group.add(shaft, head);
+  group.userData.point = (from, torque, long) => {
+    group.visible = long > 0.01;
+    if (!group.visible) return;
+    group.position.copy(from);
+    group.quaternion.setFromUnitVectors(Z, torque.clone().normalize());
+    // Three quarters of a circle at most, from where the greatest force has its length.
+    const steps = Math.max(1, Math.round(0.75 * STEPS * Math.min(1, long / 0.32)));
+    shaft.geometry.setDrawRange(0, 6 * SIDES * steps);
+    const end = (2 * Math.PI * steps) / STEPS;
+    head.position.set(radius * Math.cos(end), radius * Math.sin(end), 0);
+    head.quaternion.setFromUnitVectors(Y, new Vector3(-Math.sin(end), Math.cos(end), 0));
+  };
+  return group;
+}

@@ -1,0 +1,51 @@
+//! Contacts of mechanisms in joint coordinates.
+
+use super::Forced;
+use crate::{Clearance, CloseLoops, Correction, Error, Joint, JointSpace, Ode, Real};
+use core::ops::Range;
+
+/// The equations of motion in joint coordinates, with an input for each contact: a force of the model along the
+/// contact's coordinate, of one newton, or newton metre, for a value of one.
+#[derive(Clone, Copy, Debug)]
+pub struct JointInputs<const N: usize> {
+    /// The index of each contact's input among the model's.
+    pub inputs: [usize; N],
+}
+
+impl<M: JointSpace, const N: usize> Ode<M> for JointInputs<N> {
+    type Scalar = M::Scalar;
+    type State = M::Joints;
+
+    fn derivative(&self, model: &M, t: M::Scalar, y: &M::Joints, dy: &mut M::Joints) {
+        Joint.derivative(model, t, y, dy);
+    }
+}
+
+impl<M: JointSpace + Clone, const N: usize> Forced<M> for JointInputs<N> {
+    fn rates(&self, model: &M) -> Range<usize> {
+        let layout = model.joint_layout();
+        let n = layout.n_coordinates();
+        n..n + layout.n_rates()
+    }
+
+    fn forced(&self, model: &M, t: M::Scalar, y: &M::Joints, forces: &[M::Scalar], dy: &mut M::Joints) {
+        let mut model = model.clone();
+        for (input, force) in self.inputs.iter().zip(forces) {
+            model.set_input(*input, *force);
+        }
+        model.joint_derivative(t, y, dy);
+    }
+}
+
+/// Loops are closed as without contacts.
+impl<M: JointSpace<Scalar: Real>, const N: usize> Correction<JointInputs<N>, M> for CloseLoops<M> {
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, x: &mut M::Joints) -> Result<(), Error> {
+        Correction::<Joint, M>::correct(self, mechanism, t, x)
+    }
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> M::Scalar {
+        Correction::<Joint, M>::violation(self, mechanism, t, x)
+    }
+    fn clearance(&self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> Option<Clearance<M::Scalar>> {
+        Correction::<Joint, M>::clearance(self, mechanism, t, x)
+    }
+}

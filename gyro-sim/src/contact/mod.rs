@@ -1,0 +1,148 @@
+//! Rigid stops and dry friction that sticks, on coordinates of a system: motions in phases, with events between them.
+//!
+//! A [`Contact`] acts along one coordinate. It may stop the coordinate at two ends, each unilateral: the coordinate
+//! *hits* it, with an impulse that reverses the rate by Newton's law of restitution; *rests* on it, held by a force
+//! that only pushes; and is *let go* when the force would have to pull. And it may rub: a coordinate that moves is
+//! opposed by the kinetic level of friction, and one that is at rest *sticks*, held by whatever force it takes as long
+//! as this is below the static level.
+//!
+//! A coordinate that is held has a rate of zero and an acceleration of zero, not small ones: it does not move by one
+//! bit. Its force F makes it so, `W F + b = 0`, with b the accelerations of the coordinates without these forces and W
+//! those that unit forces add: both are the system's own ([`Forced`]), whatever constraints it has.
+//! ```
+//! use gyro_sim::contact::{Contact, Forced, Hybrid};
+//! use gyro_sim::{Control, Dop853, Ode};
+//!
+//! /// A ball that falls.
+//! #[derive(Clone, Copy)]
+//! struct Ball;
+//!
+//! impl Ode for Ball {
+//!     type Scalar = f64;
+//!     type State = [f64; 2];
+//!
+//!     fn derivative(&self, _: &(), _t: f64, y: &[f64; 2], dy: &mut [f64; 2]) {
+//!         *dy = [y[1], -9.81];
+//!     }
+//! }
+//!
+//! impl Forced for Ball {
+//!     fn rates(&self, _: &()) -> core::ops::Range<usize> {
+//!         1..2
+//!     }
+//!     fn forced(&self, _: &(), _t: f64, y: &[f64; 2], forces: &[f64], dy: &mut [f64; 2]) {
+//!         *dy = [y[1], forces[0] - 9.81];
+//!     }
+//! }
+//!
+//! # fn main() -> Result<(), gyro_sim::Error> {
+//! let floor = Contact::new(0, 1).with_stops([0.0, f64::INFINITY], 0.5).unwrap();
+//! let start = [1.0, 0.0];
+//! let mut ball = Hybrid::new(Ball, [floor], Dop853::new(&start), 0.0, &start);
+//! ball.advance_to(&(), 2.0)?;
+//! // After 1.35 s and some forty bounces it lies on the floor.
+//! assert_eq!(*ball.state(), [0.0, 0.0]);
+//! assert!((ball.record().lost - 9.81).abs() < 1e-9);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # What is solved when phases change
+//! * **Impacts.** All contacts that are hit, and those rested on, at one instant are resolved together: impulses P with
+//!   the rates `u⁺ = u⁻ + W P` after them, P ≥ 0, `u⁺ + e u⁻ ≥ 0`, one of both zero (outward positive). A stop that is
+//!   touched but being left is not to be passed, `u⁺ ≥ 0`. Where that has no solution, or would increase the kinetic
+//!   energy, as it can with stops that are being left, nothing rebounds. Dry friction has no impulse: a coordinate that
+//!   sticks is set free by one that reaches it.
+//! * **Rest.** Where several coordinates have a rate of zero, each may be held, by a force within its bounds, or move
+//!   up or down, with an acceleration that does so. All combinations are tried, those that hold most first, and the
+//!   first is taken that is consistent; a coordinate whose bound was just reached is tried moving first. So the work is
+//!   bounded: 3ⁿ solutions of at most n equations, n being the number of coordinates at rest.
+//! * **Infinitely many impacts in finite time.** When a rebound would be slower than 1e-12 of the fastest impact on the
+//!   contact, the coordinate comes to rest instead ([`Record::settled`] counts this). A mass that bounces with
+//!   restitution e is then `2 v⁺ / (a (1 − e))` from its last impact, at most 1e-12 of that time for the fastest one.
+//!
+//! # Order under steps of fixed length
+//! [`Hybrid::step`] decides at the step's end: coordinates beyond a stop are set back to it and hit it; rates that have
+//! changed their sign under friction are set to zero; forces beyond their bounds let go. Each is of order one in the
+//! step.
+
+mod equations;
+mod guards;
+mod hybrid;
+mod joint;
+mod resolve;
+mod small;
+
+pub use equations::{Contacts, Forced, Kept};
+pub use hybrid::{Hybrid, Record};
+pub use joint::JointInputs;
+
+use crate::Real;
+
+/// What acts along a coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact<T> {
+    /// The indices of the coordinate and of its rate in the state.
+    coordinate: usize,
+    rate: usize,
+    /// Where it is stopped; infinite where it is not.
+    ends: [T; 2],
+    restitution: T,
+    /// Kinetic and static level of friction.
+    levels: [T; 2],
+}
+
+impl<T: Real> Contact<T> {
+    /// Nothing yet, along the coordinate that has this index in the state, and its rate that one.
+    pub fn new(coordinate: usize, rate: usize) -> Self {
+        let (zero, infinite) = (T::constant(0.0), T::constant(f64::INFINITY));
+        Self { coordinate, rate, ends: [-infinite, infinite], restitution: zero, levels: [zero; 2] }
+    }
+
+    /// Stops at a lower and an upper end, in the coordinate's unit, infinite where there is none, with a coefficient of
+    /// restitution; `None` if the ends are not in this order or the coefficient is not between 0 and 1.
+    #[must_use]
+    pub fn with_stops(self, ends: [T; 2], restitution: T) -> Option<Self> {
+        let is_coefficient = T::constant(0.0) <= restitution && restitution <= T::constant(1.0);
+        (ends[0] < ends[1] && is_coefficient).then_some(Self { ends, restitution, ..self })
+    }
+
+    /// Dry friction with these levels of the force (N, or N m along an angle), kinetic and static; `None` unless
+    /// `0 ≤ kinetic ≤ static` and both are finite.
+    #[must_use]
+    pub fn with_friction(self, kinetic: T, at_rest: T) -> Option<Self> {
+        let is_ordered = T::constant(0.0) <= kinetic && kinetic <= at_rest && at_rest.is_finite();
+        is_ordered.then_some(Self { levels: [kinetic, at_rest], ..self })
+    }
+
+    fn rubs(&self) -> bool {
+        self.levels[1] > T::constant(0.0)
+    }
+}
+
+/// What a contact does for the time being.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Nothing: the coordinate moves without friction.
+    Free,
+    /// The coordinate moves up, against friction.
+    Up,
+    /// The coordinate moves down, against friction.
+    Down,
+    /// Friction holds it.
+    Sticks,
+    /// It rests on its lower stop.
+    AtLower,
+    /// It rests on its upper stop.
+    AtUpper,
+}
+
+impl Phase {
+    /// Whether the coordinate is held.
+    pub const fn is_held(self) -> bool {
+        matches!(self, Self::Sticks | Self::AtLower | Self::AtUpper)
+    }
+}
+
+#[cfg(test)]
+mod tests;

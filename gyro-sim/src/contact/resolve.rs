@@ -1,0 +1,230 @@
+//! Impacts, and which phases follow an event.
+
+use super::equations::{Contacts, Forced, LARGE, Local, bounds};
+use super::small::solve;
+use super::{Contact, Phase};
+use crate::Real;
+
+/// Inequalities may be violated by this part of what stands in them: they are computed from roots that are rounded.
+const ROUNDING: f64 = 1e-10;
+/// More than this part means that there is no solution.
+const UNMET: f64 = 1e-6;
+
+/// A stop that is hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Hit<T> {
+    /// The direction away from the stop: 1 or −1.
+    pub(super) outward: T,
+    pub(super) restitution: T,
+}
+
+/// The impulses on the stops that are hit, and on those that are rested on; and the rates after them.
+pub(super) fn impulses<T: Real, const N: usize>(
+    compliance: &[[T; N]; N],
+    rates: &[T; N],
+    hits: &[Option<Hit<T>>; N],
+) -> ([T; N], [T; N]) {
+    let (mut hits, zero) = (*hits, T::constant(0.0));
+    let (is_met, outcome) = by_newton(compliance, rates, &hits);
+    if is_met && work(&outcome, rates) <= zero {
+        return outcome;
+    }
+    // The impulses without rebound are a projection of the rates, which only takes energy.
+    for hit in hits.iter_mut().flatten() {
+        hit.restitution = zero;
+    }
+    by_newton(compliance, rates, &hits).1
+}
+
+/// What impulses add to the kinetic energy.
+pub(super) fn work<T: Real, const N: usize>((impulses, after): &([T; N], [T; N]), before: &[T; N]) -> T {
+    let half = T::constant(0.5);
+    (0..N).fold(T::constant(0.0), |sum, k| sum + half * impulses[k] * (after[k] + before[k]))
+}
+
+/// The impulses that violate the inequalities least, and whether that is rounding.
+fn by_newton<T: Real, const N: usize>(
+    compliance: &[[T; N]; N],
+    rates: &[T; N],
+    hits: &[Option<Hit<T>>; N],
+) -> (bool, ([T; N], [T; N])) {
+    let zero = T::constant(0.0);
+    let target = |k: usize| hits[k].map_or(zero, |hit| -hit.restitution * rates[k]);
+    let right = core::array::from_fn(|k| target(k) - rates[k]);
+    let scale = rates.iter().fold(zero, |most, rate| if rate.abs() > most { rate.abs() } else { most });
+    let mut best: Option<(T, [T; N], [T; N])> = None;
+    let n = hits.iter().flatten().count();
+    for combination in 0..1_u32 << n {
+        let mut place = 0;
+        let active = hits.map(|hit| {
+            place += u32::from(hit.is_some());
+            // Those that hold most stops come first.
+            hit.is_some() && combination >> (place - 1) & 1 == 0
+        });
+        let impulses = solve(compliance, &right, &active);
+        let after: [T; N] = core::array::from_fn(|i| {
+            compliance[i].iter().zip(&impulses).fold(rates[i], |sum, (w, impulse)| sum + *w * *impulse)
+        });
+        let mut worst = zero;
+        for (k, hit) in hits.iter().enumerate() {
+            let Some(hit) = hit else { continue };
+            let pull = -hit.outward * impulses[k] * compliance[k][k];
+            let short = hit.outward * (target(k) - after[k]);
+            for violation in [pull, short] {
+                worst = if violation > worst { violation } else { worst };
+            }
+        }
+        if best.is_none_or(|(least, ..)| worst < least) {
+            // What the stops determine is exactly that.
+            let is_met = |k: usize| (after[k] - target(k)).abs() <= T::constant(ROUNDING) * scale;
+            let after = core::array::from_fn(|k| if active[k] && is_met(k) { target(k) } else { after[k] });
+            best = Some((worst, impulses, after));
+        }
+        if worst <= T::constant(ROUNDING) * scale {
+            break;
+        }
+    }
+    let (worst, impulses, after) = best.unwrap_or((zero, [zero; N], *rates));
+    (worst <= T::constant(UNMET) * scale, (impulses, after))
+}
+
+/// What a coordinate at rest may do, in the order in which it is tried.
+type Options = ([Phase; 3], usize);
+
+fn options<T: Real>(contact: &Contact<T>, x: T, is_reached: bool) -> Options {
+    let (at_lower, at_upper) = (x <= contact.ends[0], x >= contact.ends[1]);
+    let (up, down) = if contact.rubs() { (Phase::Up, Phase::Down) } else { (Phase::Free, Phase::Free) };
+    match (at_lower, at_upper, is_reached) {
+        (true, _, false) => ([Phase::AtLower, up, up], 2),
+        (true, _, true) => ([up, Phase::AtLower, up], 2),
+        (_, true, false) => ([Phase::AtUpper, down, down], 2),
+        (_, true, true) => ([down, Phase::AtUpper, down], 2),
+        (_, _, false) => ([Phase::Sticks, up, down], 3),
+        (_, _, true) => ([up, down, Phase::Sticks], 3),
+    }
+}
+
+impl<D, T: Real, const N: usize> Contacts<D, T, N> {
+    /// The phases that are consistent with a state; the bounds of some have just been reached.
+    pub(super) fn choose<M>(
+        &mut self,
+        model: &M,
+        (t, y): (T, &D::State),
+        reached: &[bool; N],
+        scratch: &mut D::State,
+    ) where
+        D: Forced<M, Scalar = T>,
+    {
+        let zero = T::constant(0.0);
+        let values = y.as_ref();
+        let options: [Options; N] = core::array::from_fn(|k| {
+            let contact = &self.contacts[k];
+            let (x, rate) = (values[contact.coordinate], values[contact.rate]);
+            let is_stopped = x <= contact.ends[0] || x >= contact.ends[1];
+            if rate == zero && (contact.rubs() || is_stopped) {
+                return options(contact, x, reached[k]);
+            }
+            let phase = match contact.rubs() {
+                false => Phase::Free,
+                true if rate > zero => Phase::Up,
+                true => Phase::Down,
+            };
+            ([phase; 3], 1)
+        });
+        if options.iter().all(|(_, n)| *n == 1) {
+            self.phases = options.map(|(phases, _)| phases[0]);
+            return;
+        }
+        let local = self.local(model, (t, y), &[true; N], scratch);
+        let scale = self.scale(&local);
+        let mut best: Option<(T, [Phase; N])> = None;
+        let mut choice = [0; N];
+        loop {
+            self.phases = core::array::from_fn(|k| options[k].0[choice[k]]);
+            let violation = self.violation(&local, &options, values);
+            if best.is_none_or(|(least, _)| violation < least) {
+                best = Some((violation, self.phases));
+            }
+            let is_consistent = violation <= T::constant(ROUNDING) * scale;
+            if is_consistent || !next(&mut choice, &options.map(|(_, n)| n)) {
+                break;
+            }
+        }
+        if let Some((_, phases)) = best {
+            self.phases = phases;
+        }
+    }
+
+    /// The size of the accelerations that are compared.
+    fn scale(&self, local: &Local<T, N>) -> T {
+        (0..N).fold(T::constant(0.0), |sum, k| {
+            sum + local.bias[k].abs() + local.compliance[k][k] * self.contacts[k].levels[1]
+        })
+    }
+
+    /// By how much the present phases are inconsistent, as an acceleration.
+    fn violation(&self, local: &Local<T, N>, options: &[Options; N], values: &[T]) -> T {
+        let zero = T::constant(0.0);
+        let held = self.phases.map(Phase::is_held);
+        let forces = local.balance(&held, &self.kinetic_forces());
+        let accelerations = local.accelerations(&forces);
+        let mut worst = zero;
+        for k in (0..N).filter(|k| options[*k].1 > 1) {
+            let contact = &self.contacts[k];
+            let [low, high] = bounds(contact, self.phases[k]);
+            let is_at_upper = values[contact.coordinate] >= contact.ends[1];
+            let violation = match self.phases[k] {
+                phase if phase.is_held() => {
+                    let below = (low - forces[k]) * local.compliance[k][k];
+                    let above = (forces[k] - high) * local.compliance[k][k];
+                    if below > above { below } else { above }
+                }
+                Phase::Down => accelerations[k],
+                Phase::Free if is_at_upper => accelerations[k],
+                _ => -accelerations[k],
+            };
+            worst = if violation > worst { violation } else { worst };
+        }
+        worst
+    }
+
+    /// Adds what an impulse along a contact changes of all rates.
+    pub(super) fn push<M>(
+        &self,
+        model: &M,
+        (t, y): (T, &mut D::State),
+        impulses: &[T; N],
+        scratch: [&mut D::State; 2],
+    ) where
+        D: Forced<M, Scalar = T>,
+    {
+        let zero = T::constant(0.0);
+        let [base, pushed] = scratch;
+        let mut forces = [zero; N];
+        self.dynamics.forced(model, t, y, &forces, base);
+        // At the rates before all impulses: accelerations depend on rates, but what a force adds does not.
+        let before = y.clone();
+        for k in (0..N).filter(|k| impulses[*k] != zero) {
+            forces[k] = T::constant(LARGE);
+            self.dynamics.forced(model, t, &before, &forces, pushed);
+            forces[k] = zero;
+            let part = impulses[k] / T::constant(LARGE);
+            for i in self.dynamics.rates(model) {
+                let change = pushed.as_ref()[i] - base.as_ref()[i];
+                y.as_mut()[i] = T::fused(change, part, y.as_ref()[i]);
+            }
+        }
+    }
+}
+
+/// The next of all combinations; the first contact changes first.
+fn next<const N: usize>(choice: &mut [usize; N], counts: &[usize; N]) -> bool {
+    for (choice, count) in choice.iter_mut().zip(counts) {
+        *choice += 1;
+        if *choice < *count {
+            return true;
+        }
+        *choice = 0;
+    }
+    false
+}

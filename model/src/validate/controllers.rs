@@ -1,0 +1,72 @@
+//! Numbers of controllers, and what they may set inputs to.
+
+use num_traits::{Signed, Zero};
+
+use super::{Owner, Place, Problem, shown};
+use crate::{Controller, Law, Model, Number, Rational};
+
+/// Numbers that make no law.
+pub(super) fn problems(model: &Model, index: usize, controller: &Controller) -> Vec<Problem> {
+    let mut found = Vec::new();
+    let mut wrong = |key, message: String, label: String, help: &str| {
+        let place = Place { owner: Owner::Controller(index), key };
+        found.push(Problem { place, also: None, message, label, help: help.to_owned() });
+    };
+    let name = &controller.name;
+    if let Law::TransferFunction { denominator, .. } = &controller.law
+        && denominator.first().is_some_and(|first| model.exact(first).is_zero())
+    {
+        let help = "write the coefficient of the present input first, usually 1: a law cannot look ahead";
+        let message = format!("the transfer function of controller `{name}` is not causal");
+        wrong("denominator", message, "its first number is 0".to_owned(), help);
+    }
+    if let Some([least, largest]) =
+        controller.limits.as_ref().map(|limits| limits.each_ref().map(|l| model.exact(l)))
+        && least >= largest
+    {
+        let label = format!("from {} to {}", shown(&least), shown(&largest));
+        let message = format!("the limits of controller `{name}` leave nothing between them");
+        wrong("limits", message, label, "write the smaller one first: limits = [-1, 1]");
+    }
+    let is_negative = |step: &&Number| model.exact(step).is_negative();
+    let steps = [
+        ("output_step", controller.output_steps.iter().find(is_negative)),
+        ("input_step", Some(&controller.input_step).filter(is_negative)),
+    ];
+    for (key, step) in steps {
+        if let Some(step) = step {
+            let label = shown(&model.exact(step));
+            let help = "write the size of a step of the converter, or 0 for none";
+            wrong(key, format!("the `{key}` of controller `{name}` is negative"), label, help);
+        }
+    }
+    found
+}
+
+/// Inputs that must not be what a controller may set them to: a damping is not negative. Asked of a good model.
+pub(crate) fn settings_problems(model: &Model) -> Vec<Problem> {
+    let one = || Rational::from_integer(1.into());
+    let mut found = Vec::new();
+    for (index, controller) in model.controllers.iter().enumerate() {
+        let limits =
+            controller.limits.as_ref().map(|limits| limits.each_ref().map(|limit| model.exact(limit)));
+        let extremes = limits.unwrap_or_else(|| [-one(), one()]);
+        for input in &controller.inputs {
+            let refusal = extremes.iter().find_map(|value| model.check_input(*input, value).err());
+            if let Some(words) = refusal {
+                let place = Place { owner: Owner::Controller(index), key: "inputs" };
+                let (name, input) = (&controller.name, &model.inputs[*input].name);
+                found.push(Problem {
+                    place,
+                    also: None,
+                    message: format!(
+                        "controller `{name}` may set the input `{input}` to what it must not be"
+                    ),
+                    label: words,
+                    help: "keep it where it makes sense: limits = [least, largest]".to_owned(),
+                });
+            }
+        }
+    }
+    found
+}

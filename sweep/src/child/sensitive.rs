@@ -1,0 +1,315 @@
+//! Scenarios with sensitivities: each is run as without them, and then once more with its variational equations.
+
+use super::joint::{Layout, flat, joint_start, write_start};
+use super::variational::{Closing, Number, Part, Parts, Variational};
+use super::watch::Watch;
+use super::{Common, Job, Runs, note, packs, serve, whole};
+use crate::Keep;
+use crate::plan::Target;
+use crate::record::Block;
+use crate::slopes::Slopes;
+use gyro_runner::motion::{COLUMNS, MotionBuilder};
+use gyro_runner::{Input, Integrator, Schedule, Start, describe_in, scheduled};
+use gyro_sim::integrate::Method;
+use gyro_sim::lanes::f64x8;
+use gyro_sim::{Control, Dop853, Dual, Error, JointSpace, Kutta4, Partition, Solver, Tsit5, When};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+use std::rc::Rc;
+
+/// As [`whole`](super::whole), with the derivatives of what is kept; `duals` makes the mechanism in dual numbers.
+pub fn whole_sensitive<M, D, K>(
+    build: impl Fn(&[f64]) -> (M, K) + Clone,
+    duals: impl Fn(&[Number]) -> D,
+) -> ExitCode
+where
+    M: Partition<Scalar = f64> + JointSpace + Clone + 'static,
+    K: MotionBuilder<M>,
+    D: JointSpace<Scalar = Number>,
+{
+    serve(|job| {
+        let inner = whole::begin(plain(job), build.clone());
+        Sensitive::new(job, inner, move |parameters: &[f64]| build(parameters).0, duals)
+    })
+}
+
+/// As [`packs`](super::packs), likewise.
+pub fn packs_sensitive<M, P, D>(
+    one: impl Fn(&[f64]) -> M + Clone,
+    many: impl Fn(&[f64x8]) -> P,
+    check: impl Fn(&[f64]) -> Result<(), String>,
+    duals: impl Fn(&[Number]) -> D,
+) -> ExitCode
+where
+    M: JointSpace<Scalar = f64>,
+    P: JointSpace<Scalar = f64x8>,
+    D: JointSpace<Scalar = Number>,
+{
+    serve(|job| Sensitive::new(job, packs::begin(plain(job), one.clone(), many, check), one, duals))
+}
+
+/// The same job without sensitivities.
+pub(super) fn plain(job: &Job) -> &'static Job {
+    let keep = Keep { by: Vec::new(), ..job.keep.clone() };
+    Box::leak(Box::new(Job { keep, ..job.clone() }))
+}
+
+pub(super) struct Sensitive<R, F, G> {
+    inner: R,
+    common: Common,
+    times: Vec<f64>,
+    kept: Slopes<'static>,
+    /// Where the numbers stand, once a scenario has asked.
+    layout: Option<Layout>,
+    /// Of each direction: equations have derivatives times this, which are of the state's size.
+    scales: Vec<f64>,
+    one: F,
+    duals: G,
+}
+
+impl<R, F, G> Sensitive<R, F, G> {
+    pub(super) fn new(job: &'static Job, inner: R, one: F, duals: G) -> Self {
+        let scales = job.keep.by.iter().map(|target| job.plan.scale(*target)).collect();
+        let (common, times) = (Common::new(job), job.times());
+        Self { inner, common, times, kept: Slopes::new(&job.keep), layout: None, scales, one, duals }
+    }
+}
+
+impl<M, D, R, F, G> Runs for Sensitive<R, F, G>
+where
+    M: JointSpace<Scalar = f64>,
+    D: JointSpace<Scalar = Number>,
+    R: Runs,
+    F: Fn(&[f64]) -> M,
+    G: Fn(&[Number]) -> D,
+{
+    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], slopes: &[Vec<f64>]) {
+        let keep = &self.common.job.keep;
+        self.inner.run(block, starts, slopes);
+        let rows = std::mem::take(&mut block.numbers);
+        let width = keep.width(self.times.len()) - keep.slopes();
+        for (row, numbers) in (0..block.count).zip(rows.chunks_exact(width)) {
+            let (numbers, series) = numbers.split_at(keep.numbers());
+            block.numbers.extend(numbers);
+            let has_failed = block.errors.iter().any(|(failed, _)| *failed == row);
+            let mut is_whole = false;
+            if !has_failed {
+                self.common.draw(block.first + u64::from(row));
+                let start = starts.get(row as usize).and_then(|start| start.as_ref().ok());
+                let start = start.zip(slopes.get(row as usize));
+                let outcome = catch_unwind(AssertUnwindSafe(|| self.scenario(start)));
+                let panicked = |_| Err("the program panicked: this is a mistake in gyro-sim".to_owned());
+                match outcome.unwrap_or_else(panicked) {
+                    Ok(()) => is_whole = true,
+                    Err(words) => note(block, row, &format!("its sensitivities: {words}")),
+                }
+            }
+            self.kept.finish(is_whole, &self.scales, &mut block.numbers);
+            block.numbers.extend(series);
+        }
+        block.errors.sort_by_key(|(row, _)| *row);
+    }
+}
+
+impl<M, D, R, F, G> Sensitive<R, F, G>
+where
+    M: JointSpace<Scalar = f64>,
+    D: JointSpace<Scalar = Number>,
+    F: Fn(&[f64]) -> M,
+    G: Fn(&[Number]) -> D,
+{
+    /// Runs one, from an assembled start and its derivatives or from the one that all have.
+    fn scenario(&mut self, start: Option<(&Start, &Vec<f64>)>) -> Result<(), String> {
+        let job = self.common.job;
+        let mut mechanism = (self.one)(&self.common.parameters);
+        let inputs: Vec<Input> =
+            job.start.inputs.iter().cloned().chain(job.plan.inputs(&self.common.values)).collect();
+        for input in &inputs {
+            mechanism.set_input(input.index, input.at(0.0));
+        }
+        let n_parts = self.scales.len().div_ceil(COLUMNS);
+        let parts = Rc::new((0..n_parts).map(|k| self.part(k, &inputs)).collect::<Vec<_>>());
+        let (state, angles) = match start {
+            Some((start, slopes)) => (assembled(&mechanism, &parts, start, slopes), start.angles.clone()),
+            None => self.alike(&mechanism),
+        };
+        let closing = Closing::new(&mechanism, parts.clone());
+        let seen = (&job.start.observed_bodies[..], self.scales.len());
+        let mut watch = Watch::new(&mechanism, &parts, (&state, &angles), seen);
+        self.take(0.0, &state, &mut watch);
+        let n = state.len() / (1 + self.scales.len());
+        let equations = Variational(parts);
+        let outcome = match (job.approach.tolerance, job.approach.integrator) {
+            (None, _) => {
+                let solver = Solver::with_correction(equations, Kutta4::new(&state), closing, 0.0, &state);
+                self.fixed(solver.with_control(control(&mechanism, job)), &mechanism, &mut watch)
+            }
+            (_, Integrator::Tsit5) => {
+                let solver = Solver::with_correction(equations, Tsit5::new(&state), closing, 0.0, &state);
+                self.adaptive(solver.with_control(control(&mechanism, job)), &mechanism, &mut watch)
+            }
+            _ => {
+                let solver = Solver::with_correction(equations, Dop853::new(&state), closing, 0.0, &state);
+                self.adaptive(solver.with_control(control(&mechanism, job)), &mechanism, &mut watch)
+            }
+        };
+        outcome.map_err(|error| words(&mechanism, n, &error))
+    }
+
+    /// The mechanism in dual numbers for the k-th group of directions.
+    fn part(&self, k: usize, inputs: &[Input]) -> Part<D> {
+        let (job, common) = (self.common.job, &self.common);
+        let mut parameters: Vec<Number> = common.parameters.iter().map(|value| Dual::new(*value)).collect();
+        let mut inputs: Vec<(usize, Number)> =
+            inputs.iter().map(|input| (input.index, Dual::new(input.at(0.0)))).collect();
+        let group = job.keep.by.iter().zip(&self.scales).skip(k * COLUMNS).take(COLUMNS);
+        for (column, (target, scale)) in group.enumerate() {
+            match job.plan.targets[*target] {
+                Target::Parameter(index) => parameters[index].slopes[column] = *scale,
+                Target::Input(index) => {
+                    let own = inputs.iter_mut().filter(|(other, _)| *other == index);
+                    own.for_each(|(_, value)| value.slopes[column] = *scale);
+                }
+                _ => {}
+            }
+        }
+        let mut mechanism = (self.duals)(&parameters);
+        for (index, value) in inputs {
+            mechanism.set_input(index, value);
+        }
+        Part::new(mechanism)
+    }
+
+    /// The start that all scenarios have, save for joints' own that vary; it and the angles nearby.
+    fn alike(&mut self, mechanism: &M) -> (Vec<f64>, Vec<f64>) {
+        let (job, values) = (self.common.job, &self.common.values);
+        let one = &self.one;
+        let layout = self.layout.get_or_insert_with(|| Layout::new(&one(&job.parameters), job));
+        let mut state = Vec::new();
+        layout.write_start(values, &mut state);
+        let n = state.len();
+        state.resize(n * (1 + self.scales.len()), 0.0);
+        for (k, (target, scale)) in job.keep.by.iter().zip(&self.scales).enumerate() {
+            if let Some(place) = layout.start_of(*target) {
+                state[(1 + k) * n + place] = *scale;
+            }
+        }
+        let mut angles = job.start.angles.clone();
+        for (target, value) in job.plan.targets.iter().zip(values) {
+            if let Target::Start(joint, k) = *target {
+                angles[flat(mechanism, joint, k)] = *value;
+            }
+        }
+        (state, angles)
+    }
+
+    /// Steps of fixed length.
+    fn fixed<A: Method<Variational<D>, M>>(
+        &mut self,
+        mut solver: Solving<M, D, A>,
+        mechanism: &M,
+        watch: &mut Watch<'_, M, D>,
+    ) -> Result<(), Error> {
+        let job = self.common.job;
+        let mut budget = job.approach.budget.unwrap_or(u64::MAX);
+        for segment in Schedule::new(&scheduled(&job.settings, &job.approach)) {
+            #[expect(clippy::cast_precision_loss, reason = "step numbers stay below 2⁵³")]
+            let h = (segment.to - segment.from) / segment.n_steps as f64;
+            for _ in 0..segment.n_steps {
+                let Some(left) = budget.checked_sub(1) else {
+                    let steps = solver.statistics().accepted;
+                    return Err(Error::TooManySteps { t: solver.time(), steps });
+                };
+                budget = left;
+                solver.step(mechanism, h)?;
+                watch.read(solver.time(), solver.state());
+            }
+            if segment.samples {
+                self.take(segment.to, solver.state(), watch);
+            }
+        }
+        Ok(())
+    }
+
+    /// Steps under error control, which end where tables of the model do.
+    fn adaptive<A: Method<Variational<D>, M>>(
+        &mut self,
+        mut solver: Solving<M, D, A>,
+        mechanism: &M,
+        watch: &mut Watch<'_, M, D>,
+    ) -> Result<(), Error> {
+        let job = self.common.job;
+        let mut state = solver.state().clone();
+        for index in 1..self.times.len() {
+            let t = self.times[index];
+            while solver.time() < t {
+                let now = solver.time();
+                let ahead = job.start.knots.iter().copied().filter(|knot| *knot > now);
+                let end = ahead.fold(job.settings.t_end, f64::min);
+                solver.step_towards(mechanism, end)?;
+                if solver.time() >= end {
+                    solver.system_has_changed();
+                }
+                if solver.time() <= t {
+                    watch.read(solver.time(), solver.state());
+                }
+            }
+            solver.interpolate(mechanism, t, &mut state)?;
+            self.take(t, &state, watch);
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, t: f64, state: &[f64], watch: &mut Watch<'_, M, D>) {
+        self.kept.take(t, watch.columns(t, state, &self.common.job.keep.columns));
+    }
+}
+
+type Solving<M, D, A> = Solver<Variational<D>, Vec<f64>, f64, A, Closing<M, D>>;
+
+fn control<M: JointSpace>(mechanism: &M, job: &Job) -> Control {
+    let mut control = Control::default();
+    if let Some(tolerance) = job.approach.tolerance {
+        control = control.with_tolerance(tolerance);
+    }
+    let is_open = mechanism.joint_layout().closure_rows.is_empty();
+    let when = When::Steps(if is_open { u32::MAX } else { 1 });
+    Control { budget: job.approach.budget.unwrap_or(control.budget), when, ..control }
+}
+
+/// An assembled start in joint coordinates, with the derivatives of the maximal one and those of the map.
+fn assembled<M, D>(mechanism: &M, parts: &Parts<D>, start: &Start, slopes: &[f64]) -> Vec<f64>
+where
+    M: JointSpace<Scalar = f64>,
+    D: JointSpace<Scalar = Number>,
+{
+    let x = joint_start(mechanism, start);
+    let n = x.as_ref().len();
+    let own = start.positions.len() + start.velocities.len() + start.turn_references.len();
+    let directions = slopes.len() / own.max(1);
+    let mut state = x.as_ref().to_vec();
+    state.resize(n * (1 + directions), 0.0);
+    for (k, part) in parts.iter().enumerate() {
+        let (mut y, mut x) = (part.mechanism.start(), part.joints(k, &state));
+        let known = start.positions.iter().chain(&start.velocities).chain(&start.turn_references).enumerate();
+        let number = |(at, value): (usize, &f64)| {
+            let slope = |column| slopes.get((k * COLUMNS + column) * own + at).copied().unwrap_or(0.0);
+            Dual { value: *value, slopes: core::array::from_fn(slope) }
+        };
+        write_start(start, known.map(number), y.as_mut());
+        part.mechanism.to_joints(Dual::new(0.0), &y, &mut x);
+        part.write_slopes(k, &x, &mut state);
+    }
+    state
+}
+
+/// An error in words; of a derivative that of what is differentiated is told.
+fn words<M: JointSpace>(mechanism: &M, n: usize, error: &Error) -> String {
+    let of_state = |index: u16| u16::try_from(usize::from(index) % n).unwrap_or(index);
+    let error = match *error {
+        Error::NotFinite { t, index } => Error::NotFinite { t, index: of_state(index) },
+        Error::StepTooShort { t, step, index } => Error::StepTooShort { t, step, index: of_state(index) },
+        other => other,
+    };
+    describe_in(mechanism, Some(mechanism.joint_layout()), &error)
+}

@@ -1,0 +1,208 @@
+//! Derivatives against differences of runs that know nothing of dual numbers.
+
+use super::*;
+use crate::child::sensitive::{Sensitive, plain};
+use crate::child::variational::Number;
+
+/// What a program with sensitivities answers of one block.
+fn sensitive(job: &Job, unit: &Unit, is_packed: bool) -> Block {
+    let mut input = Vec::new();
+    write(&mut input, job).unwrap();
+    write(&mut input, unit).unwrap();
+    let (mut output, one) = (Vec::new(), built::<f64>);
+    let check = |values: &[f64]| if values[0] > 0.0 { Ok(()) } else { Err("no".to_owned()) };
+    let mut input = &input[..];
+    if is_packed {
+        let begin = |job| {
+            Sensitive::new(
+                job,
+                packs::begin(plain(job), one, built::<f64x8>, check),
+                one,
+                |values: &[Number]| built(values),
+            )
+        };
+        answer(begin, &mut input, &mut output)
+    } else {
+        let begin = |job| {
+            let inner = whole::begin(plain(job), |values: &[f64]| (built::<f64>(values), BUILDER));
+            Sensitive::new(job, inner, one, |values: &[Number]| built(values))
+        };
+        answer(begin, &mut input, &mut output)
+    }
+    .unwrap();
+    let bytes = record::next(&mut &output[..]).unwrap().unwrap();
+    Block::decode(&bytes, job.keep.width(job.times().len())).unwrap()
+}
+
+/// The numbers of scenarios with these values of the targets.
+fn numbers(job: &Job, rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let axes = vec![Axis { targets: (0..job.plan.targets.len()).collect(), rows }];
+    let plan = Plan { axes, draws: Vec::new(), sampling: Sampling::Random, repeats: 1, ..job.plan.clone() };
+    let keep = Keep { by: Vec::new(), ..job.keep.clone() };
+    let job = Job { plan, keep, block: 1 << 16, ..job.clone() };
+    let unit = Unit { blocks: vec![0], ..Unit::default() };
+    let all = blocks(&job, &[unit], true);
+    all[0].rows().map(|(_, numbers, _)| numbers.to_vec()).collect()
+}
+
+/// At which samples the extremes of β are, and the first of α beyond its level: of the series of all columns.
+fn samples_of(job: &Job, row: &[f64]) -> [usize; 3] {
+    let series = &row[job.keep.numbers()..];
+    let level = job.keep.passages[0].level;
+    let column = |k: usize| series.iter().skip(k).step_by(3).copied();
+    let first = |is: &dyn Fn(f64) -> bool, k| column(k).position(is).unwrap_or(usize::MAX);
+    let ends = [f64::min, f64::max].map(|end| column(1).reduce(end).unwrap());
+    [first(&|x| x == ends[0], 1), first(&|x| x == ends[1], 1), first(&|x| x >= level, 0)]
+}
+
+/// The distance of differences, in parts of a target's scale.
+const APART: f64 = 2e-3;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+
+    #[test]
+    fn derivatives_are_those_of_differences(
+        job in jobs(),
+        is_tsit5 in any::<bool>(),
+        is_fixed in any::<bool>(),
+        starts in prop_oneof![Just(vec![]), Just(vec![Target::Start(0, 0)]), Just(vec![
+            Target::StartRate(0, 1), Target::Start(0, 1), Target::StartRate(0, 0)
+        ])],
+        parts in (0.0..0.3f64, 0.0..0.3f64, 0.0..0.3f64),
+    ) {
+        let integrator = match (is_fixed, is_tsit5) {
+            (true, _) => Integrator::Rk4,
+            (_, true) => Integrator::Tsit5,
+            _ => Integrator::Dop853,
+        };
+        let tolerance = (!is_fixed).then_some(1e-12);
+        let approach = Approach { integrator, tolerance, ..job.approach };
+        let settings = Settings { step: 5e-5, t_end: 0.01, ..job.settings };
+        let mut job = Job { approach, settings, ..job };
+        // Two passages and extremes of other quantities than last values.
+        job.keep.finals = vec![0, 2];
+        job.keep.series = vec![0, 1, 2];
+        for (target, part) in starts.iter().zip([parts.0, parts.1, parts.2]) {
+            let index = job.plan.targets.len();
+            job.plan.targets.push(target.clone());
+            job.plan.axes.push(Axis { targets: vec![index], rows: vec![vec![0.1 + part]] });
+        }
+        let n = job.plan.targets.len();
+        job.keep.by = (0..n).collect();
+        job.block = 3;
+        let unit = Unit { blocks: vec![0], ..Unit::default() };
+        let packed = sensitive(&job, &unit, true);
+        let mut source = Source::new(&job.plan);
+        let mut values = vec![0.0; n];
+        let mut judged = 0;
+        for (k, row, error) in packed.rows() {
+            prop_assert_eq!(error, None);
+            source.write(k, &mut values);
+            let count = job.keep.numbers();
+            let plain = numbers(&job, vec![values.clone()]);
+            let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            prop_assert_eq!(bits(&row[..count]), bits(&plain[0][..count]));
+            for target in 0..n {
+                let h = APART * job.plan.scale(target);
+                let shifted = |parts: f64| {
+                    let mut values = values.clone();
+                    values[target] += parts * h;
+                    values
+                };
+                let near = numbers(&job, [-2.0, -1.0, 1.0, 2.0].map(shifted).to_vec());
+                // Where an extreme or a passage moves on to another sample it has a kink.
+                let is_kinked = near.iter().any(|row| samples_of(&job, row) != samples_of(&job, &plain[0]));
+                for number in 0..count {
+                    let [a, b, c, d] = [0, 1, 2, 3].map(|k| near[k][number]);
+                    let expected = (8.0 * (c - b) - (d - a)) / (12.0 * h) * job.plan.scale(target);
+                    let found = row[count + number * n + target] * job.plan.scale(target);
+                    if is_kinked || expected.is_nan() {
+                        prop_assert!(is_kinked || found.is_nan());
+                        continue;
+                    }
+                    judged += 1;
+                    prop_assert!(
+                        (found - expected).abs() < 2e-7 * (1.0 + expected.abs()),
+                        "scenario {}, number {}, target {}: {} {}", k, number, target, found, expected
+                    );
+                }
+            }
+        }
+        prop_assert!(judged > 0 || packed.count == 1, "{} derivatives were judged", judged);
+    }
+}
+
+/// Of whole runs the start is assembled: its derivatives come with it.
+#[test]
+fn whole_runs_have_the_derivatives_of_packs() {
+    let targets = vec![
+        Target::Parameter(0),
+        Target::Parameter(4),
+        Target::Parameter(2),
+        Target::Parameter(6),
+        Target::Parameter(1),
+    ];
+    let rows = vec![vec![2e-4, 1e-6, 3e-5, -1e-6, 1e-5], vec![1e-4, -1e-6, 2e-5, 1e-6, -4e-5]];
+    let axes = vec![Axis { targets: (0..5).collect(), rows: rows.clone() }];
+    let plan = Plan { seed: 1, sampling: Sampling::Random, targets, axes, draws: Vec::new(), repeats: 1 };
+    let settings = Settings { t_end: 0.02, step: 1e-3, correct_every: None, sample_every: 5e-3 };
+    let approach = Approach {
+        coordinates: Coordinates::Joint,
+        integrator: Integrator::Dop853,
+        tolerance: Some(1e-11),
+        ..Approach::default()
+    };
+    let keep = Keep { by: (0..5).collect(), series: Vec::new(), ..keep(1e-5) };
+    let (parameters, start) = (nominal(), start([0.000_125, 0.0, 0.0]));
+    let job = Job { plan, keep, settings, approach, parameters, start, block: 2, measure: None };
+    let packed = sensitive(&job, &Unit { blocks: vec![0], ..Unit::default() }, true);
+    let of_row = |row: &Vec<f64>| super::start([row[0], row[4], row[2]]);
+    let own = {
+        let Start { positions, velocities, turn_references, .. } = of_row(&rows[0]);
+        positions.len() + velocities.len() + turn_references.len()
+    };
+    let mut slopes = vec![0.0; 5 * own];
+    for (direction, place) in [(0, 14), (4, 15), (2, 16)] {
+        slopes[direction * own + place] = job.plan.scale(direction);
+    }
+    let unit = Unit {
+        blocks: vec![0],
+        starts: rows.iter().map(|row| Ok(of_row(row))).collect(),
+        slopes: vec![slopes; 2],
+    };
+    let whole = sensitive(&job, &unit, false);
+    assert!(packed.errors.is_empty() && whole.errors.is_empty(), "{packed:?} {whole:?}");
+    let n = job.keep.numbers();
+    for ((_, one, _), (_, other, _)) in packed.rows().zip(whole.rows()) {
+        for (place, (one, other)) in one.iter().zip(other).enumerate() {
+            let scale = if place < n { 1.0 } else { job.plan.scale((place - n) % 5) };
+            let distance = (one - other) * scale;
+            assert!(one.is_nan() && other.is_nan() || distance.abs() < 1e-9, "{place}: {one} {other}");
+        }
+    }
+}
+
+/// A scenario of which only the derivatives fail is a row with an error that says so, and keeps its numbers.
+#[test]
+fn derivatives_that_fail_are_named() {
+    let axes = vec![Axis { targets: vec![0], rows: vec![vec![1e-4], vec![-1e-4]] }];
+    let targets = vec![Target::Parameter(0)];
+    let plan = Plan { seed: 1, sampling: Sampling::Random, targets, axes, draws: Vec::new(), repeats: 1 };
+    let settings = Settings { t_end: 0.01, step: 1e-3, correct_every: None, sample_every: 0.01 };
+    let approach = Approach {
+        coordinates: Coordinates::Joint,
+        integrator: Integrator::Tsit5,
+        tolerance: Some(1e-5),
+        budget: Some(6),
+        ..Approach::default()
+    };
+    let keep = Keep { by: vec![0], ..keep(1.0) };
+    let (parameters, start) = (nominal(), start([0.000_125, 0.0, 0.0]));
+    let job = Job { plan, keep, settings, approach, parameters, start, block: 2, measure: None };
+    let found = sensitive(&job, &Unit { blocks: vec![0], ..Unit::default() }, true);
+    let rows: Vec<_> = found.rows().collect();
+    assert_eq!(rows[1].2, Some("no"));
+    let numbers = job.keep.numbers();
+    assert!(rows[1].1[numbers..numbers + 2].iter().all(|x| x.is_nan()));
+}

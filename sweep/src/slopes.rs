@@ -1,0 +1,138 @@
+//! How what is kept of a scenario changes with what varies.
+
+use crate::Keep;
+
+/// A number with its derivatives.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Sloped {
+    /// The number.
+    pub(crate) value: f64,
+    /// Its derivatives, one for each direction.
+    pub(crate) slopes: Vec<f64>,
+}
+
+/// Follows a scenario from sample to sample, as [`Keeper`](crate::Keeper) does, and differentiates what that keeps: a
+/// last value, an extreme at the sample where it is, and a first passage as the line between its two samples has it,
+/// which is the implicit function theorem, `dt/dp = −(∂y/∂p)/ẏ`, for that line.
+#[derive(Clone, Debug)]
+pub(crate) struct Slopes<'a> {
+    keep: &'a Keep,
+    t: f64,
+    last: Vec<Sloped>,
+    /// Smallest and largest.
+    extremes: Vec<[Sloped; 2]>,
+    /// None before the passage.
+    passages: Vec<Option<Vec<f64>>>,
+}
+
+impl<'a> Slopes<'a> {
+    pub(crate) fn new(keep: &'a Keep) -> Self {
+        Self { keep, t: f64::NAN, last: Vec::new(), extremes: Vec::new(), passages: Vec::new() }
+    }
+
+    /// Takes a sample: a number for each column.
+    pub(crate) fn take(&mut self, t: f64, now: Vec<Sloped>) {
+        let keep = self.keep;
+        if self.last.is_empty() {
+            let both = |column: &usize| [now[*column].clone(), now[*column].clone()];
+            self.extremes = keep.extremes.iter().map(both).collect();
+            self.passages = vec![None; keep.passages.len()];
+        }
+        for ([low, high], column) in self.extremes.iter_mut().zip(&keep.extremes) {
+            let now = &now[*column];
+            if now.value < low.value {
+                low.clone_from(now);
+            }
+            if now.value > high.value {
+                high.clone_from(now);
+            }
+        }
+        for (passed, passage) in self.passages.iter_mut().zip(&keep.passages) {
+            let now = &now[passage.column];
+            let before = self.last.get(passage.column);
+            let value = before.map_or(f64::NAN, |before| before.value);
+            if passed.is_some() || passage.between((self.t, value), (t, now.value)).is_nan() {
+                continue;
+            }
+            let slope = |(before, after): (&f64, &f64)| {
+                let rise = now.value - value;
+                let moved = -before * rise - (passage.level - value) * (after - before);
+                (t - self.t) * moved / (rise * rise)
+            };
+            *passed = Some(match before {
+                Some(before) => before.slopes.iter().zip(&now.slopes).map(slope).collect(),
+                // It was beyond the level from the start.
+                None => vec![0.0; now.slopes.len()],
+            });
+        }
+        (self.t, self.last) = (t, now);
+    }
+
+    /// Appends the derivatives of each kept number by each direction, or NaN for all after a failure, and forgets the
+    /// scenario. Lengths are in units of `scales`, of which there is one for each direction.
+    pub(crate) fn finish(&mut self, is_whole: bool, scales: &[f64], out: &mut Vec<f64>) {
+        let keep = self.keep;
+        let end = out.len() + keep.slopes();
+        if is_whole {
+            let mut add =
+                |slopes: &[f64]| out.extend(slopes.iter().zip(scales).map(|(slope, scale)| slope / scale));
+            keep.finals.iter().for_each(|column| add(&self.last[*column].slopes));
+            self.extremes.iter().flatten().for_each(|extreme| add(&extreme.slopes));
+            let never = vec![f64::NAN; scales.len()];
+            self.passages.iter().for_each(|passage| add(passage.as_ref().unwrap_or(&never)));
+        }
+        out.resize(end, f64::NAN);
+        self.t = f64::NAN;
+        self.last.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Passage, Quantity};
+
+    /// `y = p t (4 − t)` and its derivative by p.
+    fn parabola(p: f64, t: f64) -> Sloped {
+        Sloped { value: p * t * (4.0 - t), slopes: vec![2.0 * t * (4.0 - t)] }
+    }
+
+    #[test]
+    fn slopes_of_a_parabola_are_differences_of_what_is_kept() {
+        let passage = |level, rises| Passage { column: 0, level, rises };
+        let keep = Keep {
+            columns: vec![Quantity::Kinetic],
+            finals: vec![0],
+            extremes: vec![0],
+            passages: vec![passage(2.0, true), passage(-1.0, false), passage(9.0, true), passage(0.0, true)],
+            by: vec![0],
+            ..Keep::default()
+        };
+        let mut slopes = Slopes::new(&keep);
+        let kept = |p: f64| {
+            let mut keeper = crate::Keeper::new(&keep, 6);
+            (0..6).for_each(|k| keeper.take(f64::from(k), |_| parabola(p, f64::from(k)).value));
+            let mut numbers = Vec::new();
+            keeper.finish(true, &mut numbers);
+            numbers
+        };
+        for _ in 0..2 {
+            (0..6).for_each(|k| slopes.take(f64::from(k), vec![parabola(1.0, f64::from(k))]));
+            let mut found = Vec::new();
+            slopes.finish(true, &[2.0], &mut found);
+            let (above, below) = (kept(1.0 + 1e-5), kept(1.0 - 1e-5));
+            assert_eq!(found.len(), keep.slopes());
+            for (found, (above, below)) in found.iter().zip(above.iter().zip(&below)) {
+                let expected = (above - below) / 2e-5;
+                assert!(
+                    found.is_nan() && expected.is_nan() || (found - expected).abs() < 1e-8,
+                    "{found} {expected}"
+                );
+            }
+        }
+        slopes.take(0.0, vec![parabola(1.0, 0.0)]);
+        let mut found = Vec::new();
+        slopes.finish(false, &[1.0], &mut found);
+        assert!(found.len() == keep.slopes() && found.iter().all(|x| x.is_nan()));
+    }
+}
