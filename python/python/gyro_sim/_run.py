@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from . import _native
-    from ._mechanism import Mechanism
 
     Array = NDArray[np.float64]
 
@@ -53,7 +52,7 @@ class Run:
     of shape (samples,). `run.names` has all names, `run.units` their units.
     """
 
-    def __init__(self, native: _native.Run, mechanism: Mechanism) -> None:
+    def __init__(self, native: _native.Run, mechanism: _native.Mechanism) -> None:
         self._native = native
         self._mechanism = mechanism
         columns = native.columns()
