@@ -13,7 +13,7 @@ use crate::verify::proved;
 use crate::{Cli, Command, batches, files, json, linearization, remarks, simulate, summary, urdf};
 use clap::Parser;
 use gyro_codegen::{Effort, Functions};
-use gyro_jit::Compiled;
+use gyro_jit::{Compiled, Library, Sizes};
 use gyro_model::Model;
 use gyro_runner::motion::Linear;
 use gyro_runner::{Event, JointSample, Start};
@@ -21,7 +21,7 @@ use gyro_sim::JointPlace;
 use gyro_verifier::Depth;
 use serde_json::{Value, json};
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 pub use crate::columns::{Column, Shown, coordinates};
@@ -293,18 +293,19 @@ pub fn generate(file: &str, model: &Model) -> Result<String, Failure> {
     Ok(proved(model, module)?.code)
 }
 
-/// Has cargo compile these functions for many states at a time, for this very processor if that is asked for; returns
-/// the library, which has the functions `gyro_accelerations` and `gyro_advance`.
+/// Has cargo compile these functions for many states at a time, for this very processor if that is asked for; the model
+/// is of these sizes.
 ///
 /// # Errors
-/// The model has none, cargo is missing, or the proof refutes it.
+/// The model has no such functions, cargo is missing, or the proof refutes them.
 pub fn batches(
     file: &str,
     model: &Model,
     functions: &Functions,
+    sizes: Sizes,
     is_native: bool,
-) -> Result<PathBuf, Failure> {
-    batches::compiled(file, model, functions, is_native)
+) -> Result<Library, Failure> {
+    batches::compiled(file, model, functions, sizes, is_native)
 }
 
 /// The proof of all functions of a model, as `verify` has it: whether all is proved, its text and its object.

@@ -1,8 +1,7 @@
 //! Many states at once.
 
-use crate::compiled::ByCargo;
 use crate::dynamics::Dynamics;
-use gyro_jit::{Compiled, NotCompiled};
+use gyro_jit::{Compiled, Library, NotCompiled};
 use gyro_runner::batch::{self, Inputs};
 use gyro_sim::lanes::f64x2;
 use rayon::prelude::*;
@@ -20,7 +19,7 @@ pub(crate) enum Many {
     /// Compiled in the process for two lanes.
     InProcess(Compiled<f64x2>),
     /// Compiled by cargo for eight, with the values of the parameters.
-    ByCargo(ByCargo, Vec<f64>),
+    ByCargo(Library, Vec<f64>),
 }
 
 impl Many {
@@ -30,7 +29,7 @@ impl Many {
     }
 
     /// The same by what cargo compiled.
-    pub(crate) fn by_cargo(compiled: ByCargo, dynamics: &Dynamics) -> Self {
+    pub(crate) fn by_cargo(compiled: Library, dynamics: &Dynamics) -> Self {
         Self::ByCargo(compiled, dynamics.mechanism.parameters().to_vec())
     }
 

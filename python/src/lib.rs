@@ -2,7 +2,6 @@
 
 mod arguments;
 mod batch;
-mod compiled;
 mod dynamics;
 mod errors;
 mod linear;

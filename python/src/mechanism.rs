@@ -2,7 +2,6 @@
 
 use crate::arguments::{doubles, of_many, one, result, rows, set_inputs, slice, zeros};
 use crate::batch::{self, Batch, Many};
-use crate::compiled::ByCargo;
 use crate::dynamics::{self, Dynamics};
 use crate::errors;
 use crate::linear::linearize;
@@ -11,6 +10,7 @@ use crate::sensitivity;
 use crate::stepper::Stepper;
 use gyro_cli::library::{self, Kernels, Request};
 use gyro_codegen::{Effort, Functions, Group};
+use gyro_jit::Sizes;
 use gyro_model::Model;
 use gyro_sim::JointSpace;
 use gyro_verifier::Depth;
@@ -380,12 +380,12 @@ impl Mechanism {
         let sizes = {
             let mut state = self.ready(py)?;
             let dynamics = state.dynamics();
-            [dynamics.n_x, dynamics.n_u, self.page.parameters.len(), self.page.inputs.len()]
+            let (parameters, inputs) = (self.page.parameters.len(), self.page.inputs.len());
+            Sizes { x: dynamics.n_x, u: dynamics.n_u, parameters, inputs }
         };
         let (file, page) = (self.file.clone(), self.page.clone());
-        let compiled = interruptible(py, move |_| {
-            ByCargo::load(&library::batches(&file, &page, &functions(false), native)?, sizes)
-        })?;
+        let compiled =
+            interruptible(py, move |_| library::batches(&file, &page, &functions(false), sizes, native))?;
         let mut state = self.ready(py)?;
         state.many = vec![Many::by_cargo(compiled, state.dynamics())];
         Ok(())

@@ -5,6 +5,9 @@
 use gyro_sim::{Joint, JointSpace, Lanes, Rk4, Scalar};
 use std::ops::Range;
 
+/// How many states the functions of a library take at most: their arguments are arrays of so many rows.
+pub const BLOCK: usize = 64;
+
 /// The inputs of many states: the same for all, or a row for each.
 #[derive(Clone, Copy, Debug)]
 pub enum Inputs<'a> {
