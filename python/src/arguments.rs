@@ -3,19 +3,41 @@
 use crate::dynamics::Dynamics;
 use crate::errors;
 use gyro_runner::batch::Inputs;
-use numpy::{PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{
+    BorrowError, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
+    PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 
-/// An array of doubles in C order; what is none is copied into one.
+/// An array of doubles in C order; what is none is copied into one, if its numbers are real.
 pub(crate) fn doubles<'py>(given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     if let Ok(array) = given.cast::<PyArrayDyn<f64>>()
-        && array.is_c_contiguous()
+        && is_plain(array)
     {
-        return Ok(array.try_readonly()?);
+        return readonly(array);
     }
     let py = given.py();
-    let converted = py.import("numpy")?.call_method1("ascontiguousarray", (given, "f8"))?;
-    Ok(converted.cast::<PyArrayDyn<f64>>()?.try_readonly()?)
+    let numpy = py.import("numpy")?;
+    let array = numpy.call_method1("asarray", (given,))?;
+    let is_real: bool =
+        numpy.call_method1("can_cast", (array.getattr("dtype")?, "f8", "same_kind"))?.extract()?;
+    if !is_real {
+        let words = format!("real numbers were expected, not an array of {}", array.getattr("dtype")?);
+        return Err(errors::request(py, &words));
+    }
+    // Elements need not stand where their type asks for: a copy's do.
+    let copy = numpy.call_method1("array", (array, "f8"))?;
+    readonly(numpy.call_method1("ascontiguousarray", (copy,))?.cast::<PyArrayDyn<f64>>()?)
+}
+
+/// Whether Rust can take the elements where they are.
+fn is_plain(array: &Bound<'_, PyArrayDyn<f64>>) -> bool {
+    array.is_c_contiguous() && array.data().is_aligned()
+}
+
+fn readonly<'py>(array: &Bound<'py, PyArrayDyn<f64>>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    let busy = |_| errors::request(array.py(), "an array was given that another thread is writing to");
+    array.try_readonly().map_err(busy)
 }
 
 /// Its numbers.
@@ -101,10 +123,23 @@ pub(crate) fn result<'py>(
     shape: &[usize],
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     match out.cast_into::<PyArrayDyn<f64>>() {
-        Ok(array) if array.is_c_contiguous() && array.shape() == shape => Ok(array),
+        Ok(array) if is_plain(&array) && array.shape() == shape => Ok(array),
         _ => {
             let words = format!("out: an array of float64 in C order with the shape {shape:?} was expected");
             Err(errors::request(py, &words))
         }
     }
+}
+
+/// The numbers of an array for results.
+pub(crate) fn writable<'py>(out: &Bound<'py, PyArrayDyn<f64>>) -> PyResult<PyReadwriteArrayDyn<'py, f64>> {
+    out.try_readwrite().map_err(|error| {
+        errors::request(
+            out.py(),
+            match error {
+                BorrowError::NotWriteable => "out: an array was expected that can be written to",
+                _ => "out: an array was expected that has no memory in common with the arguments",
+            },
+        )
+    })
 }

@@ -5,7 +5,10 @@ use gyro_jit::{Compiled, Library, NotCompiled};
 use gyro_runner::batch::{self, Inputs};
 use gyro_sim::lanes::f64x2;
 use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::ops::Range;
+use std::process;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Fewer states than these are not worth another thread.
 const SHARE: usize = 256;
@@ -76,21 +79,43 @@ pub(crate) struct Batch<'a> {
     pub(crate) out: &'a mut [f64],
 }
 
+/// The threads of this process: one that was forked has none of its parent's.
+static THREADS: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+
+/// A thread for each core.
+pub(crate) fn threads() -> Arc<ThreadPool> {
+    let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((of, pool)) = &*threads
+        && *of == process::id()
+    {
+        return pool.clone();
+    }
+    // Of a parent's nothing is left that could be waited for.
+    std::mem::forget(threads.take());
+    let pool = Arc::new(ThreadPoolBuilder::new().build().expect("threads can be started"));
+    *threads = Some((process::id(), pool.clone()));
+    pool
+}
+
 /// The accelerations of many states of these sizes (x, u, inputs), on all cores. The pool grows to one for each thread.
 pub(crate) fn accelerations(pool: &mut Vec<Many>, [n_x, n_u, n_inputs]: [usize; 3], batch: Batch<'_>) {
     if pool.is_empty() || n_u == 0 {
         return;
     }
-    let n = batch.out.len() / n_u;
-    let share = n.div_ceil(rayon::current_num_threads()).max(SHARE).next_multiple_of(PACK);
+    let (n, threads) = (batch.out.len() / n_u, threads());
+    let share = n.div_ceil(threads.current_num_threads()).max(SHARE).next_multiple_of(PACK);
     while pool.len() < n.div_ceil(share) {
         pool.push(pool[0].clone());
     }
     let Batch { t, x, u, inputs, out } = batch;
-    let parts = out.par_chunks_mut(share * n_u).zip(pool.par_iter_mut()).enumerate();
-    parts.for_each(|(part, (out, many))| {
+    let compute = |(part, (out, many)): (usize, (&mut [f64], &mut Many))| {
         let rows = part * share..part * share + out.len() / n_u;
         let of = (&x[rows.start * n_x..rows.end * n_x], &u[rows.start * n_u..rows.end * n_u]);
         many.accelerations(t, inputs.of(rows, n_inputs), of, out);
-    });
+    };
+    if n <= share {
+        return compute((0, (out, &mut pool[0])));
+    }
+    threads
+        .install(|| out.par_chunks_mut(share * n_u).zip(pool.par_iter_mut()).enumerate().for_each(compute));
 }

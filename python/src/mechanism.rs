@@ -1,6 +1,6 @@
 //! Mechanisms.
 
-use crate::arguments::{doubles, of_many, one, result, rows, set_inputs, slice, zeros};
+use crate::arguments::{doubles, of_many, one, result, rows, set_inputs, slice, writable, zeros};
 use crate::batch::{self, Batch, Many};
 use crate::dynamics::{self, Dynamics};
 use crate::errors;
@@ -238,7 +238,7 @@ impl Mechanism {
             return Err(errors::request(py, &words));
         }
         let out = out.map_or_else(|| Ok(zeros(py, n, n_u)), |out| result(py, out, u.shape()))?;
-        let mut results = out.try_readwrite()?;
+        let mut results = writable(&out)?;
         let results = results.as_slice_mut()?;
         if n.is_some() {
             let defaults = dynamics.defaults.clone();
@@ -271,7 +271,7 @@ impl Mechanism {
         one(py, given.shape(), n)?;
         set_inputs(py, dynamics, inputs.as_ref())?;
         let out = out.map_or_else(|| Ok(zeros(py, None, n)), |out| result(py, out, given.shape()))?;
-        dynamics.derivative(t, slice(&given), out.try_readwrite()?.as_slice_mut()?);
+        dynamics.derivative(t, slice(&given), writable(&out)?.as_slice_mut()?);
         Ok(out.into_any())
     }
 
@@ -345,10 +345,9 @@ impl Mechanism {
         inputs: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<StatesAndSlopes<'py>> {
         let (times, given, inputs) = (doubles(times)?, doubles(state)?, inputs.map(doubles).transpose()?);
-        if !(step > 0.0
-            && slice(&times).is_sorted()
-            && slice(&times).first().is_none_or(|&first| first >= 0.0))
-        {
+        let times = slice(&times).to_vec();
+        let is_time = |t: &f64| t.is_finite() && *t >= 0.0;
+        if !(step > 0.0 && times.is_sorted() && times.iter().all(is_time)) {
             return Err(errors::request(
                 py,
                 "increasing times from 0 on and a positive step were expected, s",
@@ -367,10 +366,11 @@ impl Mechanism {
         };
         let places: Vec<usize> = parameters.iter().map(place).collect::<PyResult<_>>()?;
         let values = inputs.as_ref().map_or(dynamics.defaults.clone(), |inputs| slice(inputs).to_vec());
-        let (schedule, state) = ((slice(&times), step), slice(&given));
-        let found =
-            py.detach(move || sensitivity::sensitivities(&dynamics, &values, state, schedule, &places));
-        let shape = [slice(&times).len(), state.len()];
+        let (shape, state) = ([times.len(), slice(&given).len()], slice(&given).to_vec());
+        let found = interruptible(py, move |stop| {
+            let from = (&state[..], &values[..]);
+            sensitivity::sensitivities(&dynamics, from, (&times, step), &places, stop)
+        })?;
         Ok((PyArray1::from_vec(py, found.states).reshape(shape)?, PyArray1::from_vec(py, found.slopes)))
     }
 

@@ -1,7 +1,7 @@
 //! Steps in a loop.
 
-use crate::arguments::{doubles, result, rows, slice};
-use crate::batch::{Many, PACK};
+use crate::arguments::{doubles, result, rows, slice, writable};
+use crate::batch::{Many, PACK, threads};
 use crate::dynamics::Dynamics;
 use crate::errors;
 use gyro_jit::{Compiled, NotCompiled};
@@ -49,6 +49,9 @@ struct Thread {
 
 /// Fewer states than these are not worth another thread.
 const SHARE: usize = 64;
+
+/// How many substeps of a state are taken before Python is asked for signals: some milliseconds.
+const AT_ONCE: u64 = 1 << 15;
 
 /// When steps begin, s, their length, and which ones are to be taken.
 type Steppings = ((f64, f64), Range<u64>);
@@ -116,7 +119,10 @@ impl Stepper {
             loops: CloseLoops::new(&dynamics.mechanism),
             dynamics: dynamics.clone(),
         };
-        let n_threads = states.len().div_ceil(SHARE).clamp(1, rayon::current_num_threads());
+        let n_threads = match states.len().div_ceil(SHARE) {
+            0 | 1 => 1,
+            shares => shares.min(threads().current_num_threads()),
+        };
         let threads = vec![thread; n_threads];
         let steps = Steps {
             dt,
@@ -139,10 +145,10 @@ impl Steps {
         self.from + self.done as f64 * (self.dt / f64::from(self.substeps))
     }
 
-    /// Advances all states.
-    fn step(&mut self) -> Result<(), Error> {
+    /// Advances all states by some substeps.
+    fn step(&mut self, substeps: u64) -> Result<(), Error> {
         let h = self.dt / f64::from(self.substeps);
-        let end = self.done + u64::from(self.substeps);
+        let end = self.done + substeps;
         let steps = ((self.from, h), self.done..end);
         let n_inputs = self.threads[0].dynamics.defaults.len();
         let own = self.own.as_deref();
@@ -152,32 +158,49 @@ impl Steps {
             // Whole packs, so that none straddles.
             let share = self.states.len().div_ceil(self.threads.len()).next_multiple_of(PACK).max(PACK);
             let parts = self.states.par_chunks_mut(share).zip(self.threads.par_iter_mut());
-            parts.enumerate().try_for_each(|(part, (states, thread))| {
-                thread.advance(&steps, states, own.map(|own| &own[part * share * n_inputs..]))
+            threads().install(|| {
+                parts.enumerate().try_for_each(|(part, (states, thread))| {
+                    thread.advance(&steps, states, own.map(|own| &own[part * share * n_inputs..]))
+                })
             })?;
         }
         self.done = end;
         Ok(())
     }
 
-    /// The states as an array, or written into one.
-    fn show<'py>(
+    /// Takes some substeps, of many states without the interpreter's lock.
+    fn take(&mut self, py: Python<'_>, substeps: u64) -> PyResult<()> {
+        let taken = match self.rows {
+            None => self.step(substeps),
+            Some(_) => py.detach(|| self.step(substeps)),
+        };
+        taken.map_err(|error| {
+            let mechanism = &self.threads[0].dynamics.mechanism;
+            errors::run(py, &describe_in(mechanism, Some(mechanism.joint_layout()), &error))
+        })
+    }
+
+    /// An array for the states: the caller's, if it has one.
+    fn room<'py>(
         &self,
         py: Python<'py>,
         out: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let shape = [self.states.len(), self.n_state];
         let shape = if self.rows.is_some() { &shape[..] } else { &shape[1..] };
-        let out = match out {
-            None => PyArrayDyn::zeros(py, shape, false),
-            Some(out) => result(py, out, shape)?,
-        };
-        let mut numbers = out.try_readwrite()?;
+        let Some(out) = out else { return Ok(PyArrayDyn::zeros(py, shape, false)) };
+        let out = result(py, out, shape)?;
+        writable(&out)?;
+        Ok(out)
+    }
+
+    /// Writes the states into an array of this shape.
+    fn show(&self, out: &Bound<'_, PyArrayDyn<f64>>) -> PyResult<()> {
+        let mut numbers = writable(out)?;
         for (to, from) in numbers.as_slice_mut()?.chunks_exact_mut(self.n_state.max(1)).zip(&self.states) {
             to.copy_from_slice(&from[..self.n_state]);
         }
-        drop(numbers);
-        Ok(out)
+        Ok(())
     }
 
     /// Sets the inputs: the same for all, or those of each state.
@@ -215,21 +238,29 @@ impl Stepper {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let inputs = inputs.map(doubles).transpose()?;
         let mut steps = self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+        // Nothing moves if this cannot be told.
+        let out = steps.room(py, out)?;
         if let Some(inputs) = &inputs {
             steps.set_inputs(py, inputs)?;
         }
-        let stepped = match steps.rows {
-            None => steps.step(),
-            Some(_) => {
-                let steps = &mut *steps;
-                py.detach(|| steps.step())
+        let substeps = u64::from(steps.substeps);
+        let at_once = (AT_ONCE / steps.states.len().max(1) as u64).clamp(1, substeps);
+        let before = (at_once < substeps).then(|| (steps.done, steps.states.clone()));
+        let mut left = substeps;
+        loop {
+            steps.take(py, at_once.min(left))?;
+            left = left.saturating_sub(at_once);
+            if left == 0 {
+                steps.show(&out)?;
+                return Ok(out);
             }
-        };
-        stepped.map_err(|error| {
-            let mechanism = &steps.threads[0].dynamics.mechanism;
-            errors::run(py, &describe_in(mechanism, Some(mechanism.joint_layout()), &error))
-        })?;
-        steps.show(py, out)
+            if let Err(signal) = py.check_signals() {
+                if let Some(before) = before {
+                    (steps.done, steps.states) = before;
+                }
+                return Err(signal);
+            }
+        }
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {
@@ -253,7 +284,10 @@ impl Stepper {
     /// (x, u) now.
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner).show(py, None)
+        let steps = self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+        let out = steps.room(py, None)?;
+        steps.show(&out)?;
+        Ok(out)
     }
 
     /// Goes on from another state, or others, at a time, with the model file's inputs.
