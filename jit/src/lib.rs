@@ -43,6 +43,7 @@ mod contract;
 mod description;
 mod engine;
 mod interpret;
+mod line;
 mod machine_code;
 mod mechanism;
 mod native;
