@@ -168,11 +168,11 @@ impl Steps {
         Ok(())
     }
 
-    /// Takes some substeps, of many states without the interpreter's lock.
+    /// Takes some substeps; without the interpreter's lock where it takes longer than to give it back.
     fn take(&mut self, py: Python<'_>, substeps: u64) -> PyResult<()> {
         let taken = match self.rows {
-            None => self.step(substeps),
-            Some(_) => py.detach(|| self.step(substeps)),
+            None if substeps < AT_ONCE => self.step(substeps),
+            _ => py.detach(|| self.step(substeps)),
         };
         taken.map_err(|error| {
             let mechanism = &self.threads[0].dynamics.mechanism;
