@@ -88,14 +88,11 @@ impl<T: Native> MachineCode<T> {
 impl<T: Native> Engine<T> for MachineCode<T> {
     #[inline(always)]
     fn compute(&self, scheduled: &Scheduled, kernel: Kernel, arguments: Arguments<'_, T>) {
-        // Taken apart, they stay in registers on the short way.
-        let Arguments { t, state, given, own, out } = arguments;
         match &self.code.functions[kernel as usize] {
-            Some(compiled) if compiled.is_plain => {
-                compiled.call(kernel, Arguments { t, state, given, own, out }, None);
-            }
+            Some(compiled) if compiled.is_plain => compiled.call(kernel, arguments, None),
             Some(compiled) => {
-                self.compute_with_work(compiled, scheduled, kernel, Arguments { t, state, given, own, out });
+                let Arguments { t, state, given, own, out } = arguments;
+                self.compute_with_work(compiled, (scheduled, kernel), t, state, given, own, out);
             }
             None => (),
         }
@@ -103,22 +100,28 @@ impl<T: Native> Engine<T> for MachineCode<T> {
 }
 
 impl<T: Native> MachineCode<T> {
-    /// Computes a kernel that reads curves or tables of loops.
+    /// Computes a kernel that reads curves or tables of loops. Its arguments come one by one: together they would be
+    /// written to memory on the short way, too.
     #[inline(never)]
+    #[expect(clippy::too_many_arguments, reason = "see above")]
     fn compute_with_work(
         &self,
         compiled: &Function<T>,
-        scheduled: &Scheduled,
-        kernel: Kernel,
-        arguments: Arguments<'_, T>,
+        (scheduled, kernel): (&Scheduled, Kernel),
+        t: T,
+        state: &[T],
+        given: &[T],
+        own: &[T],
+        out: &mut [T],
     ) {
         let mut work = self.work.borrow_mut();
         if work.len() < compiled.n_work {
             work.resize(compiled.n_work, T::constant(0.0));
         }
         if compiled.reads_curves {
-            write_curves(scheduled, arguments.t, &mut work[..3 * scheduled.curves.len()]);
+            write_curves(scheduled, t, &mut work[..3 * scheduled.curves.len()]);
         }
+        let arguments = Arguments { t, state, given, own, out };
         compiled.call(kernel, arguments, Some((&self.code.tables, &mut work)));
     }
 }
