@@ -45,14 +45,28 @@ pub(crate) fn slice<'a>(array: &'a PyReadonlyArrayDyn<'_, f64>) -> &'a [f64] {
     array.as_slice().unwrap_or_default()
 }
 
+/// A shape as Python writes it.
+pub(crate) fn tuple(shape: &[usize]) -> String {
+    match shape {
+        [only] => format!("({only},)"),
+        shape => format!("({})", shape.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")),
+    }
+}
+
 /// How many states an array has: `None` for one alone, `(n,)`; else `(rows, n)`.
 pub(crate) fn rows(py: Python<'_>, name: &str, shape: &[usize], n: usize) -> PyResult<Option<usize>> {
     match *shape {
         [found] if found == n => Ok(None),
         [rows, found] if found == n => Ok(Some(rows)),
+        _ if n == 0 => {
+            Err(errors::request(py, &format!("{name} of shape {}: the model file has none", tuple(shape))))
+        }
         _ => Err(errors::request(
             py,
-            &format!("{name} has the shape {shape:?}: ({n},) was expected, or (rows, {n}) for many at once"),
+            &format!(
+                "{name} of shape {}: ({n},) was expected, or (rows, {n}) for many at once",
+                tuple(shape)
+            ),
         )),
     }
 }
@@ -63,7 +77,7 @@ pub(crate) fn one(py: Python<'_>, shape: &[usize], n: usize) -> PyResult<()> {
         [found] if *found == n => Ok(()),
         _ => Err(errors::request(
             py,
-            &format!("the state has the shape {shape:?}: ({n},) was expected, x and then u"),
+            &format!("a state of shape {}: ({n},) was expected, x and then u", tuple(shape)),
         )),
     }
 }
@@ -125,7 +139,8 @@ pub(crate) fn result<'py>(
     match out.cast_into::<PyArrayDyn<f64>>() {
         Ok(array) if is_plain(&array) && array.shape() == shape => Ok(array),
         _ => {
-            let words = format!("out: an array of float64 in C order with the shape {shape:?} was expected");
+            let words =
+                format!("out: an array of float64 in C order with the shape {} was expected", tuple(shape));
             Err(errors::request(py, &words))
         }
     }

@@ -1,6 +1,6 @@
 //! Mechanisms.
 
-use crate::arguments::{doubles, of_many, one, result, rows, set_inputs, slice, writable, zeros};
+use crate::arguments::{doubles, of_many, one, result, rows, set_inputs, slice, tuple, writable, zeros};
 use crate::batch::{self, Batch, Many};
 use crate::dynamics::{self, Dynamics};
 use crate::errors;
@@ -233,8 +233,11 @@ impl Mechanism {
         let (n_x, n_u) = (dynamics.n_x, dynamics.n_u);
         let n = rows(py, "x", x.shape(), n_x)?;
         if rows(py, "u", u.shape(), n_u)? != n {
-            let words =
-                format!("x has the shape {:?} and u {:?}: as many rows were expected", x.shape(), u.shape());
+            let words = format!(
+                "x of shape {} and u of {}: as many rows were expected",
+                tuple(x.shape()),
+                tuple(u.shape())
+            );
             return Err(errors::request(py, &words));
         }
         let out = out.map_or_else(|| Ok(zeros(py, n, n_u)), |out| result(py, out, u.shape()))?;

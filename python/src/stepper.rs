@@ -1,6 +1,6 @@
 //! Steps in a loop.
 
-use crate::arguments::{doubles, result, rows, slice, writable};
+use crate::arguments::{doubles, result, rows, slice, tuple, writable};
 use crate::batch::{Many, PACK, threads};
 use crate::dynamics::Dynamics;
 use crate::errors;
@@ -297,8 +297,10 @@ impl Stepper {
         let mut steps = self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
         let n_state = steps.n_state;
         if rows(py, "state", given.shape(), n_state)? != steps.rows {
-            let words =
-                format!("state has the shape {:?}: that of the stepper's state was expected", given.shape());
+            let words = format!(
+                "a state of shape {}: that of the stepper's state was expected",
+                tuple(given.shape())
+            );
             return Err(errors::request(py, &words));
         }
         let numbers = slice(&given).chunks_exact(n_state.max(1));

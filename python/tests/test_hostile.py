@@ -81,7 +81,7 @@ def test_a_step_that_cannot_be_told_is_not_taken(gimbal):
     for wrong in [np.zeros(5), np.zeros(6, np.float32), unaligned(np.zeros(6)), "abc"]:
         with pytest.raises(gyro.RequestError, match="out:"):
             stepper.step(out=wrong)
-    with pytest.raises(gyro.RequestError, match=r"\(0,\) was expected"):
+    with pytest.raises(gyro.RequestError, match="the model file has none"):
         stepper.step([1.0])
     assert stepper.t == 0 and (stepper.state == gimbal.start()).all()
 
@@ -111,6 +111,22 @@ def test_what_is_not_finite_is_passed_on_or_refused(gimbal, pendulum):
         with pytest.raises(gyro.RequestError, match="increasing times"):
             pendulum.sensitivities([0.0, value], ["length"])
     assert pendulum.parameters == {"length": 0.5}
+    with pytest.raises(gyro.RequestError, match="no sample at t = nan s, the nearest is at 0 s"):
+        pendulum.simulate(0.1).state(np.nan)
+
+
+def test_names_and_numbers_that_there_are_not(pendulum, tmp_path):
+    for substeps in (0, -1, 2**32):
+        with pytest.raises(gyro.RequestError, match="a whole number from 1 on"):
+            pendulum.stepper(1e-3, substeps=substeps)
+    with pytest.raises(TypeError):
+        pendulum.stepper(1e-3, substeps=2.5)
+    with pytest.raises(FileNotFoundError):
+        gyro.from_urdf(tmp_path / "none.urdf")
+    with pytest.raises(KeyError, match="the run has 't', .*'hinge'"):
+        pendulum.simulate(0.01).plot("hing")
+    with pytest.raises(gyro.RequestError, match=r"x of shape \(2, 1\) and u of \(3, 1\)"):
+        pendulum.joint_accelerations(np.zeros((2, 1)), np.zeros((3, 1)))
 
 
 def test_a_pickle_has_the_text_that_was_read(tmp_path):
