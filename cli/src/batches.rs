@@ -7,8 +7,8 @@ use gyro_codegen::{Functions, Module};
 use gyro_jit::{Library, Sizes};
 use gyro_model::Model;
 
-/// Generates, proves, compiles and loads the library of a model with these functions, for this very processor if that is
-/// asked for.
+/// Generates, proves, compiles and loads the library of a model with these functions, for this very processor if that
+/// is asked for.
 pub(crate) fn compiled(
     file: &str,
     page: &Model,
@@ -22,7 +22,7 @@ pub(crate) fn compiled(
     Library::load(&path, sizes).map_err(|error| Failure::Run(format!("{}: {error}", path.display())))
 }
 
-/// The text of the library. Its arguments are arrays of fixed lengths, so that no address is followed in it but by rustc.
+/// The text of the library. Its arguments are arrays of fixed lengths, so that it is safe Rust.
 fn root(module: &Module, page: &Model, sizes: Sizes, is_native: bool) -> String {
     let type_name = &module.type_name;
     let parameters = page.parameters.iter().enumerate();

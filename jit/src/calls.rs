@@ -115,8 +115,8 @@ impl<T: Native> Drop for Code<T> {
 type Accelerations =
     unsafe extern "C" fn(f64, usize, *const f64, *const f64, *const f64, *const f64, *mut f64);
 
-/// When steps are counted from and their length; the first and the one after the last; number of states; parameters, then
-/// row after row inputs and states.
+/// When steps are counted from and their length; the first and the one after the last; number of states; parameters,
+/// then row after row inputs and states.
 type Advance = unsafe extern "C" fn(f64, f64, u64, u64, usize, *const f64, *const f64, *mut f64);
 
 /// How many numbers of each kind a mechanism has.

@@ -98,7 +98,8 @@ pub fn accelerations<M: JointSpace>(
     }
 }
 
-/// Advances joint states (x, u) of a tree by Kutta's method of order 4: these steps, each `h` s long, counted from a time.
+/// Advances joint states (x, u) of a tree by Kutta's method of order 4: these steps, each `h` s long, counted from a
+/// time.
 ///
 /// # Panics
 /// As [`accelerations`].

@@ -1,6 +1,6 @@
 //! Mechanisms compiled in the process beside the same ones compiled by rustc, many to one program: `beside_rustc
 //! [--time] [FILE...] [FIRST_SEED COUNT]`. All functions and short runs must have the same bits, and what Cranelift is
-//! given must be what the module says; with `--time` it says what a call takes. The model files of seeds are random ones.
+//! given must be what the module says; with `--time` it says what a call takes. The model files of seeds are random.
 //! `--on COUNT` goes on where the last such call ended: `target/beside-rustc.next` has the seed.
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
