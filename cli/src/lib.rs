@@ -2,6 +2,8 @@
 //! those who develop the project. What is public besides [`Cli`] and [`Command`] is for these.
 
 mod args;
+#[cfg(feature = "jit")]
+mod batches;
 mod cache;
 pub mod chain;
 mod check;

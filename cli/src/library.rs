@@ -10,10 +10,10 @@ use crate::runs::Runs;
 use crate::scene::{self, Scene};
 use crate::verdict::{self, Outcome};
 use crate::verify::proved;
-use crate::{Cli, Command, files, json, linearization, remarks, simulate, summary, urdf};
+use crate::{Cli, Command, batches, files, json, linearization, remarks, simulate, summary, urdf};
 use clap::Parser;
 use gyro_codegen::{Effort, Functions};
-use gyro_jit::Compiled;
+use gyro_jit::{Compiled, Library, Sizes};
 use gyro_model::Model;
 use gyro_runner::motion::Linear;
 use gyro_runner::{Event, JointSample, Start};
@@ -291,6 +291,21 @@ pub fn text(model: &Model, linear: &Linear) -> String {
 pub fn generate(file: &str, model: &Model) -> Result<String, Failure> {
     let module = gyro_codegen::generate_model(file, model).map_err(|e| Failure::Usage(e.to_string()))?;
     Ok(proved(model, module)?.code)
+}
+
+/// Has cargo compile these functions for many states at a time, for this very processor if that is asked for; the model
+/// is of these sizes.
+///
+/// # Errors
+/// The model has no such functions, cargo is missing, or the proof refutes them.
+pub fn batches(
+    file: &str,
+    model: &Model,
+    functions: &Functions,
+    sizes: Sizes,
+    is_native: bool,
+) -> Result<Library, Failure> {
+    batches::compiled(file, model, functions, sizes, is_native)
 }
 
 /// The proof of all functions of a model, as `verify` has it: whether all is proved, its text and its object.

@@ -92,6 +92,14 @@ pub(crate) fn program(
     package.program_file()
 }
 
+/// The same without a proof, for one that is only timed.
+#[cfg(feature = "jit")]
+pub(crate) fn unproved(module: &Module, precision: Precision) -> Result<PathBuf, Failure> {
+    let package = Package::program(module, precision, None);
+    build(&package)?;
+    package.program_file()
+}
+
 /// Compiles a module into a program with these lines that runs the scenarios of studies, for this very processor if
 /// that is asked for; returns where it is.
 pub(crate) fn sweeping(
@@ -100,9 +108,7 @@ pub(crate) fn sweeping(
     main: String,
     is_native: bool,
 ) -> Result<PathBuf, Failure> {
-    let options: &[&str] =
-        if is_native { &["--config", "build.rustflags=['-Ctarget-cpu=native']"] } else { &[] };
-    let mut package = Package::new(module, ("main.rs", main), options);
+    let mut package = Package::new(module, ("main.rs", main), processor(is_native));
     package.without_cargo = SINGLE_SCENARIOS;
     package.manifest += "\n[dependencies.gyro-sweep]\npath = \"../../sweep\"\n";
     if !package.is_there()? {
@@ -110,6 +116,31 @@ pub(crate) fn sweeping(
     }
     build(&package)?;
     package.program_file()
+}
+
+/// What rustc is told of the processor.
+fn processor(is_native: bool) -> &'static [&'static str] {
+    if is_native { &["--config", "build.rustflags=['-Ctarget-cpu=native']"] } else { &[] }
+}
+
+/// Compiles a module into a library that a program loads, with this text at its root; returns where it is.
+#[cfg(feature = "jit")]
+pub(crate) fn loadable(
+    page: &Model,
+    module: &Module,
+    root: String,
+    is_native: bool,
+) -> Result<PathBuf, Failure> {
+    use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+    let mut package = Package::new(module, ("lib.rs", root), processor(is_native));
+    package.without_cargo = "; all else works without it";
+    package.manifest =
+        manifest(&package.name, ", features = [\"lanes\"]") + "\n[lib]\ncrate-type = [\"cdylib\"]\n";
+    if !package.is_there()? {
+        verify_quickly(page, module)?;
+    }
+    build(&package)?;
+    package.built(&format!("{DLL_PREFIX}{}{DLL_SUFFIX}", package.name.replace('-', "_")))
 }
 
 /// A program that takes the word `answer`, the path of a model file and the names of a form and of a precision, and
@@ -189,7 +220,7 @@ impl Package {
         (&root.1, &module.code).hash(&mut hasher);
         let name = format!("{}-{:016x}", module.name, hasher.finish());
         Self {
-            manifest: manifest(&name),
+            manifest: manifest(&name, ""),
             name,
             root,
             mechanism: module.code.clone(),
@@ -218,8 +249,8 @@ impl Package {
     }
 }
 
-/// A manifest with the carried sources as dependencies.
-fn manifest(name: &str) -> String {
+/// A manifest with the carried sources as dependencies, the runtime with these features.
+fn manifest(name: &str, features: &str) -> String {
     format!(
         "[package]
 name = \"{name}\"
@@ -230,7 +261,7 @@ publish = false
 [workspace]
 
 [dependencies]
-gyro-sim = {{ path = \"../../gyro-sim\", default-features = false }}
+gyro-sim = {{ path = \"../../gyro-sim\", default-features = false{features} }}
 gyro-runner = {{ path = \"../../runner\" }}
 
 [profile.release]

@@ -5,6 +5,7 @@
 //! left to do) as a parameter. What Cranelift may do with floating-point operations keeps their bits.
 
 use crate::engine::{Array, Layout, Shape};
+use crate::line::{Line, is_same, negated, second};
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{
     AbiParam, Block, FuncRef, InstBuilder, MemFlagsData, Signature, StackSlot, StackSlotData, StackSlotKind,
@@ -21,7 +22,7 @@ pub(crate) const ARRAYS: [Array; 6] =
     [Array::State, Array::Given, Array::Own, Array::Tables, Array::Work, Array::Out];
 
 /// The elementary functions that are called, in the order of [`Writer::functions`].
-pub(crate) const FUNCTIONS: [&str; 4] = ["sin", "cos", "tanh", "atan2"];
+pub(crate) const FUNCTIONS: [&str; 5] = ["sin", "cos", "tanh", "atan2", "sin_cos"];
 
 /// A number type of machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,10 +62,26 @@ impl Width {
             signature.params.push(AbiParam::new(pointer));
             return signature;
         }
-        let n = if name == "atan2" { 2 } else { 1 };
-        signature.params.extend((0..n).map(|_| AbiParam::new(self.ty())));
-        signature.returns.push(AbiParam::new(self.ty()));
+        let [n_arguments, n_results] = match name {
+            "atan2" => [2, 1],
+            "sin_cos" => [1, 2],
+            _ => [1, 1],
+        };
+        signature.params.extend((0..n_arguments).map(|_| AbiParam::new(self.ty())));
+        signature.returns.extend((0..n_results).map(|_| AbiParam::new(self.ty())));
         signature
+    }
+
+    /// Whether sine and cosine of an angle are taken by one call: two numbers must come back in registers, as Rust
+    /// returns a pair of them. Two `f32` share one.
+    fn takes_both(self) -> bool {
+        match self {
+            Self::Single => false,
+            Self::Double => {
+                cfg!(all(unix, any(target_arch = "x86_64", target_arch = "aarch64")))
+            }
+            Self::Pair => true,
+        }
     }
 }
 
@@ -76,7 +93,7 @@ pub(crate) struct Writer<'w, 'f> {
     pub(crate) shape: &'w Shape,
     /// Where the tables of each loop begin.
     pub(crate) tables: &'w [usize],
-    pub(crate) functions: [FuncRef; 4],
+    pub(crate) functions: [FuncRef; 5],
     pub(crate) pointer: Type,
     /// How much of each array is read or written.
     pub(crate) reach: [usize; 6],
@@ -86,6 +103,8 @@ pub(crate) struct Writer<'w, 'f> {
     pub(crate) slot: Option<StackSlot>,
     /// What was loaded last outside of loops: array and place, and by which operation.
     pub(crate) loaded: Vec<((Array, usize), Value, usize)>,
+    /// Sine and cosine of angles, of the tape that is written.
+    pub(crate) turns: Vec<(Place, [Value; 2])>,
 }
 
 /// How many operations long a number stays in its register: it is loaded again where it is used later.
@@ -105,40 +124,6 @@ struct Part {
     count: usize,
     table: usize,
     columns: usize,
-}
-
-/// A tape with its signs that differences take: those of no use to any other operation or to what it gives.
-struct Line<'t> {
-    tape: &'t Tape<Variable, f64>,
-    is_taken: Vec<bool>,
-    /// Of products that are of use to nothing but their signs the constant factors that the signs go to.
-    scaled_by: Vec<Option<Place>>,
-    /// These factors.
-    is_opposite: Vec<bool>,
-}
-
-impl<'t> Line<'t> {
-    fn new<'g>(tape: &'t Tape<Variable, f64>, given: impl Iterator<Item = &'g Place> + Clone) -> Self {
-        let scaled_by = scaled(tape, given.clone());
-        let mut is_opposite = vec![false; tape.operations.len()];
-        scaled_by.iter().flatten().for_each(|factor| is_opposite[factor.0 as usize] = true);
-        let is_sign = |operation: &Operation<_, _>| !IS_FUSED && matches!(operation, Operation::Negate(_));
-        let mut is_taken: Vec<bool> = tape.operations.iter().map(is_sign).collect();
-        let mut stays = |place: Place| is_taken[place.0 as usize] = false;
-        given.copied().for_each(&mut stays);
-        for operation in &tape.operations {
-            match *operation {
-                Operation::Fused(a, b, c) => {
-                    stays(b);
-                    if negated(tape, a).is_some() {
-                        stays(c);
-                    }
-                }
-                ref other => other.operands().for_each(&mut stays),
-            }
-        }
-        Self { tape, is_taken, scaled_by, is_opposite }
-    }
 }
 
 impl Writer<'_, '_> {
@@ -209,6 +194,7 @@ impl Writer<'_, '_> {
         self.builder.ins().brif(is_done, after, &[], body, &[]);
         self.builder.switch_to_block(body);
         self.strides.clear();
+        let outside = std::mem::take(&mut self.turns);
         let part = Part { number, count: each.count, table, columns: each.table.first().map_or(0, Vec::len) };
         let mut values = Vec::with_capacity(each.body.operations.len());
         let n = each.body.operations.len();
@@ -223,6 +209,7 @@ impl Writer<'_, '_> {
         }
         let next = self.builder.ins().iadd_imm_s(number, step);
         self.jump(condition, next);
+        self.turns = outside;
         self.builder.switch_to_block(after);
     }
 
@@ -273,10 +260,10 @@ impl Writer<'_, '_> {
             Operation::Fused(a, b, c) if IS_FUSED => self.builder.ins().fma(at(a), at(b), at(c)),
             Operation::Fused(a, b, c) => self.rounded_twice(tape, [*a, *b, *c], values),
             Operation::Sqrt(a) => self.builder.ins().sqrt(at(a)),
-            Operation::Sin(a) => self.call(0, &[at(a)]),
-            Operation::Cos(a) => self.call(1, &[at(a)]),
-            Operation::Tanh(a) => self.call(2, &[at(a)]),
-            Operation::Atan2(y, x) => self.call(3, &[at(y), at(x)]),
+            Operation::Sin(a) => self.sine_or_cosine(tape, (*a, 0), at(a)),
+            Operation::Cos(a) => self.sine_or_cosine(tape, (*a, 1), at(a)),
+            Operation::Tanh(a) => self.call(2, &[at(a)])[0],
+            Operation::Atan2(y, x) => self.call(3, &[at(y), at(x)])[0],
         }
     }
 
@@ -315,18 +302,46 @@ impl Writer<'_, '_> {
         }
     }
 
-    fn call(&mut self, function: usize, arguments: &[Value]) -> Value {
+    /// Sine or cosine of an angle, by one call if the other one is asked for, too.
+    fn sine_or_cosine(
+        &mut self,
+        tape: &Tape<Variable, f64>,
+        (angle, which): (Place, usize),
+        value: Value,
+    ) -> Value {
+        let is_other = |operation: &Operation<Variable, f64>| match *operation {
+            Operation::Sin(of) => which == 1 && is_same(tape, of, angle),
+            Operation::Cos(of) => which == 0 && is_same(tape, of, angle),
+            _ => false,
+        };
+        if !self.width.takes_both() || !tape.operations.iter().any(is_other) {
+            return self.call(which, &[value])[0];
+        }
+        if let Some((_, both)) = self.turns.iter().find(|(of, _)| is_same(tape, *of, angle)) {
+            return both[which];
+        }
+        let both = self.call(4, &[value]);
+        self.turns.push((angle, both));
+        both[which]
+    }
+
+    /// The results of a function; of one result it is there twice.
+    fn call(&mut self, function: usize, arguments: &[Value]) -> [Value; 2] {
         // No register outlives a call.
         self.loaded.clear();
         if self.width == Width::Pair {
             return self.call_by_address(function, arguments);
         }
         let call = self.builder.ins().call(self.functions[function], arguments);
-        self.builder.inst_results(call)[0]
+        match *self.builder.inst_results(call) {
+            [first, second] => [first, second],
+            [only] => [only, only],
+            _ => unreachable!("it is declared with one result or two"),
+        }
     }
 
-    /// The arguments are in memory, and the result then is in place of the first.
-    fn call_by_address(&mut self, function: usize, arguments: &[Value]) -> Value {
+    /// The arguments are in memory, and the results then are in their place.
+    fn call_by_address(&mut self, function: usize, arguments: &[Value]) -> [Value; 2] {
         let slot = *self.slot.get_or_insert_with(|| {
             let pairs = StackSlotData::new(StackSlotKind::ExplicitSlot, 2 * types::F64X2.bytes(), 4);
             self.builder.create_sized_stack_slot(pairs)
@@ -336,7 +351,10 @@ impl Writer<'_, '_> {
         }
         let address = self.builder.ins().stack_addr(self.pointer, slot, 0);
         self.builder.ins().call(self.functions[function], &[address]);
-        self.builder.ins().stack_load(self.pointer, self.width.ty(), slot, 0)
+        let mut result =
+            |n| self.builder.ins().stack_load(self.pointer, self.width.ty(), slot, self.width.bytes(n));
+        let first = result(0);
+        if FUNCTIONS[function] == "sin_cos" { [first, result(1)] } else { [first, first] }
     }
 
     fn variable(&mut self, known: &Known, variable: Variable, part: Option<Part>, at: usize) -> Value {
@@ -408,52 +426,6 @@ impl Writer<'_, '_> {
 impl Known {
     fn array(&self, array: Array) -> Value {
         self.arrays[place_of(array)]
-    }
-}
-
-/// Operands in an order in which a constant comes second, or else what was loaded last: processors read second operands
-/// from memory, which is where both are.
-fn second(tape: &Tape<Variable, f64>, [a, b]: [Place; 2]) -> [Place; 2] {
-    let rank = |place: Place| match tape.operations[place.0 as usize] {
-        Operation::Constant(_) => (2, 0),
-        Operation::Variable(_) => (1, place.0),
-        _ => (0, 0),
-    };
-    if rank(a) > rank(b) { [b, a] } else { [a, b] }
-}
-
-/// Of products that are of use to nothing but their signs the constant factor, if it is of no other use.
-fn scaled<'g>(tape: &Tape<Variable, f64>, given: impl Iterator<Item = &'g Place>) -> Vec<Option<Place>> {
-    let (mut n_uses, mut n_signs) = (vec![0; tape.operations.len()], vec![0; tape.operations.len()]);
-    given.for_each(|place| n_uses[place.0 as usize] += 1);
-    for operation in &tape.operations {
-        operation.operands().for_each(|place| n_uses[place.0 as usize] += 1);
-        match *operation {
-            Operation::Negate(of) => n_signs[of.0 as usize] += 1,
-            // Differences are made of what signs stand before.
-            Operation::Fused(a, _, c) => {
-                let taken = [a, c].into_iter().filter_map(|place| negated(tape, place));
-                taken.for_each(|place| n_uses[place.0 as usize] += 1);
-            }
-            _ => (),
-        }
-    }
-    let factor = |place: Place| {
-        let is_constant = matches!(tape.operations[place.0 as usize], Operation::Constant(_));
-        (is_constant && n_uses[place.0 as usize] == 1).then_some(place)
-    };
-    let of = |(at, operation): (usize, &Operation<Variable, f64>)| match *operation {
-        Operation::Multiply(a, b) if n_signs[at] == 1 && n_uses[at] == 1 => factor(a).or_else(|| factor(b)),
-        _ => None,
-    };
-    tape.operations.iter().enumerate().map(of).collect()
-}
-
-/// What a number is the negative of, if it is written so.
-fn negated(tape: &Tape<Variable, f64>, place: Place) -> Option<Place> {
-    match tape.operations[place.0 as usize] {
-        Operation::Negate(of) => Some(of),
-        _ => None,
     }
 }
 

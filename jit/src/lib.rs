@@ -37,20 +37,25 @@
 //! ```
 #![deny(missing_docs)]
 
+mod calls;
 mod clif;
 mod contract;
 mod description;
 mod engine;
 mod interpret;
+mod line;
 mod machine_code;
 mod mechanism;
+mod native;
 mod run;
 
+pub use calls::{Library, NotLoaded, Sizes};
 pub use contract::{Independent, OnHeap};
 pub use engine::{Arguments, Engine};
 pub use interpret::Interpreter;
-pub use machine_code::{Input, MachineCode, Native, NotCompiled};
+pub use machine_code::{Input, MachineCode, NotCompiled};
 pub use mechanism::InProcess;
+pub use native::Native;
 pub use run::{Runs, answer, simulate};
 
 use gyro_codegen::{Effort, Functions, Scheduled};

@@ -1,12 +1,10 @@
-//! A mechanism in joint coordinates with the buffers that its functions need: for one state at a time, and for two.
+//! A mechanism in joint coordinates with the buffers that its functions need.
 
-use gyro_jit::{Compiled, NotCompiled};
+use gyro_jit::Compiled;
 use gyro_model::Model;
 use gyro_runner::Start;
 use gyro_runner::motion::joints_near;
-use gyro_sim::lanes::f64x2;
-use gyro_sim::{Joint, JointPlace, JointSpace, Mechanism as _, Rk4};
-use std::ops::Range;
+use gyro_sim::{JointPlace, JointSpace, Mechanism as _};
 
 /// Computes from positions x, rates u and inputs.
 #[derive(Clone, Debug)]
@@ -53,6 +51,11 @@ impl Dynamics {
                 self.mechanism.set_input(index, then);
             }
         }
+    }
+
+    /// What they are set to.
+    pub(crate) fn inputs(&self) -> &[f64] {
+        &self.inputs
     }
 
     /// Sets them to the model file's values.
@@ -114,77 +117,6 @@ impl Dynamics {
             at += place.n_coordinates();
         }
         angles
-    }
-}
-
-/// The same in two lanes, with the bits of two states one by one.
-#[derive(Clone, Debug)]
-pub(crate) struct Pair {
-    mechanism: Compiled<f64x2>,
-    n_x: usize,
-    inputs: Vec<[f64; 2]>,
-    state: Vec<f64x2>,
-    rates: Vec<f64x2>,
-    method: Rk4<Vec<f64x2>>,
-}
-
-impl Pair {
-    /// With the parameters and inputs as they are.
-    pub(crate) fn of(dynamics: &Dynamics) -> Result<Self, NotCompiled> {
-        let mechanism = dynamics.mechanism.compiled::<f64x2>()?;
-        let (state, rates) = (mechanism.joint_start(), mechanism.joint_buffers().rates);
-        let inputs = dynamics.defaults.iter().map(|&value| [value; 2]).collect();
-        Ok(Self { method: Rk4::new(&state), mechanism, n_x: dynamics.n_x, inputs, state, rates })
-    }
-
-    /// Sets a parameter for both.
-    pub(crate) fn set_parameter(&mut self, index: usize, value: f64) {
-        self.mechanism.set_parameter(index, f64x2::splat(value));
-    }
-
-    /// Sets the inputs of each lane.
-    pub(crate) fn set_inputs(&mut self, inputs: [&[f64]; 2]) {
-        for (index, now) in self.inputs.iter_mut().enumerate() {
-            let then = inputs.map(|inputs| inputs[index]);
-            if now.map(f64::to_bits) != then.map(f64::to_bits) {
-                *now = then;
-                self.mechanism.set_input(index, f64x2::new(then));
-            }
-        }
-    }
-
-    /// u̇ of both.
-    pub(crate) fn accelerations(&mut self, t: f64, x: [&[f64]; 2], u: [&[f64]; 2], out: [&mut [f64]; 2]) {
-        let (of_x, of_u) = self.state.split_at_mut(self.n_x);
-        for (to, of) in [(of_x, x), (of_u, u)] {
-            for ((to, a), b) in to.iter_mut().zip(of[0]).zip(of[1]) {
-                *to = f64x2::new([*a, *b]);
-            }
-        }
-        self.mechanism.joint_accelerations(f64x2::splat(t), &self.state, &mut self.rates);
-        let [first, second] = out;
-        for ((rate, a), b) in self.rates.iter().zip(first).zip(second) {
-            [*a, *b] = rate.to_array();
-        }
-    }
-}
-
-impl Pair {
-    /// Both of two states (x, u) by so many steps h; of trees, as no loop is closed.
-    pub(crate) fn advance(&mut self, (from, h): (f64, f64), steps: Range<u64>, [a, b]: [&mut [f64]; 2]) {
-        let n = a.len().min(b.len()).min(self.state.len());
-        self.state[n..].fill(f64x2::splat(0.0));
-        for ((to, a), b) in self.state.iter_mut().zip(&*a).zip(&*b) {
-            *to = f64x2::new([*a, *b]);
-        }
-        for step in steps {
-            #[expect(clippy::cast_precision_loss, reason = "step numbers stay below 2⁵³")]
-            let t = f64x2::splat(from + step as f64 * h);
-            self.method.step(&Joint, &self.mechanism, t, f64x2::splat(h), &mut self.state);
-        }
-        for ((from, a), b) in self.state.iter().zip(a).zip(b) {
-            [*a, *b] = from.to_array();
-        }
     }
 }
 

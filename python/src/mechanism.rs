@@ -1,16 +1,16 @@
 //! Mechanisms.
 
-use crate::arguments::{doubles, of_many, one, result, rows, set_inputs, slice, zeros};
-use crate::batch::{self, Batch};
-use crate::dynamics::{self, Dynamics, Pair};
+use crate::arguments::{doubles, of_many, one, result, rows, set_inputs, slice, tuple, writable, zeros};
+use crate::batch::{self, Batch, Many};
+use crate::dynamics::{self, Dynamics};
 use crate::errors;
 use crate::linear::linearize;
 use crate::run::{Run, interruptible};
 use crate::sensitivity;
 use crate::stepper::Stepper;
-use gyro_cli::failure::Failure;
 use gyro_cli::library::{self, Kernels, Request};
 use gyro_codegen::{Effort, Functions, Group};
+use gyro_jit::Sizes;
 use gyro_model::Model;
 use gyro_sim::JointSpace;
 use gyro_verifier::Depth;
@@ -44,7 +44,7 @@ struct State {
     /// For single states, made when it is first asked for.
     dynamics: Option<Dynamics>,
     /// For many, one for each thread, made when they are first asked for.
-    pairs: Vec<Pair>,
+    many: Vec<Many>,
 }
 
 /// What is compiled for accelerations, and what for linearisations.
@@ -59,12 +59,8 @@ impl Mechanism {
     fn new(py: Python<'_>, text: String, file: String, folder: PathBuf) -> PyResult<Self> {
         let page = py.detach(|| library::read_text(&file, &text, &folder));
         let page = page.map_err(|failure| errors::raised(py, failure))?;
-        let state = Mutex::new(State {
-            model: page.clone(),
-            set: BTreeMap::new(),
-            dynamics: None,
-            pairs: Vec::new(),
-        });
+        let state =
+            Mutex::new(State { model: page.clone(), set: BTreeMap::new(), dynamics: None, many: Vec::new() });
         Ok(Self { page, file, text, folder, kernels: Arc::default(), state })
     }
 
@@ -156,7 +152,7 @@ impl Mechanism {
             if let Some(dynamics) = &mut state.dynamics {
                 dynamics.mechanism.set_parameter(index, value);
             }
-            state.pairs.iter_mut().for_each(|pair| pair.set_parameter(index, value));
+            state.many.iter_mut().for_each(|many| many.set_parameter(index, value));
         }
         state.model = model;
         state.set.extend(values);
@@ -177,8 +173,8 @@ impl Mechanism {
         let request = Request::of(&self.file, &options).map_err(|failure| errors::raised(py, failure))?;
         let request =
             inputs.into_iter().fold(request, |request, (name, rows)| request.with_input(&name, rows));
-        interruptible(py, |stop| library::Run::make((&self.page, &self.file), &request, &self.kernels, stop))
-            .map(Run)
+        let (file, page, kernels) = (self.file.clone(), self.page.clone(), self.kernels.clone());
+        interruptible(py, move |stop| library::Run::make((&page, &file), &request, &kernels, stop)).map(Run)
     }
 
     /// (x, u) of a sample of one of this mechanism's runs.
@@ -237,19 +233,23 @@ impl Mechanism {
         let (n_x, n_u) = (dynamics.n_x, dynamics.n_u);
         let n = rows(py, "x", x.shape(), n_x)?;
         if rows(py, "u", u.shape(), n_u)? != n {
-            let words =
-                format!("x has the shape {:?} and u {:?}: as many rows were expected", x.shape(), u.shape());
+            let words = format!(
+                "x of shape {} and u of {}: as many rows were expected",
+                tuple(x.shape()),
+                tuple(u.shape())
+            );
             return Err(errors::request(py, &words));
         }
         let out = out.map_or_else(|| Ok(zeros(py, n, n_u)), |out| result(py, out, u.shape()))?;
-        let mut results = out.try_readwrite()?;
+        let mut results = writable(&out)?;
         let results = results.as_slice_mut()?;
         if n.is_some() {
             let defaults = dynamics.defaults.clone();
             let inputs = of_many(py, n, inputs.as_ref(), &defaults)?;
             let batch = Batch { t, x: slice(&x), u: slice(&u), inputs, out: results };
-            let pairs = state.pairs(py)?;
-            py.detach(|| batch::accelerations(pairs, [n_x, n_u, defaults.len()], batch));
+            let sizes = [n_x, n_u, defaults.len()];
+            let many = state.many(py)?;
+            py.detach(|| batch::accelerations(many, sizes, batch));
         } else {
             set_inputs(py, dynamics, inputs.as_ref())?;
             dynamics.accelerations(t, (slice(&x), slice(&u)), results);
@@ -274,7 +274,7 @@ impl Mechanism {
         one(py, given.shape(), n)?;
         set_inputs(py, dynamics, inputs.as_ref())?;
         let out = out.map_or_else(|| Ok(zeros(py, None, n)), |out| result(py, out, given.shape()))?;
-        dynamics.derivative(t, slice(&given), out.try_readwrite()?.as_slice_mut()?);
+        dynamics.derivative(t, slice(&given), writable(&out)?.as_slice_mut()?);
         Ok(out.into_any())
     }
 
@@ -289,8 +289,9 @@ impl Mechanism {
     ) -> PyResult<Linearized<'py>> {
         let (given, inputs) = (doubles(state)?, inputs.map(doubles).transpose()?);
         let model = self.locked(py).model.clone();
-        let compile = || self.kernels.get(&self.page, &functions(true), Effort::Full);
-        let mut dynamics = Dynamics::new(interruptible(py, |_| compile())?, &model);
+        let (kernels, page) = (self.kernels.clone(), self.page.clone());
+        let compiled = interruptible(py, move |_| kernels.get(&page, &functions(true), Effort::Full))?;
+        let mut dynamics = Dynamics::new(compiled, &model);
         one(py, given.shape(), dynamics.n_x + dynamics.n_u)?;
         set_inputs(py, &mut dynamics, inputs.as_ref())?;
         let values = inputs.as_ref().map_or(&dynamics.defaults[..], slice);
@@ -327,10 +328,11 @@ impl Mechanism {
         }
         let given = doubles(state)?;
         let mut ready = self.ready(py)?;
+        let by_cargo = ready.many.first().filter(|many| matches!(many, Many::ByCargo(..))).cloned();
         let dynamics = ready.dynamics();
         dynamics.reset_inputs();
         let n = rows(py, "state", given.shape(), dynamics.n_x + dynamics.n_u)?;
-        let stepper = Stepper::new(dynamics, dt, substeps, (n, slice(&given)));
+        let stepper = Stepper::new(dynamics, (dt, substeps), (n, slice(&given)), by_cargo);
         stepper.map_err(|error| errors::request(py, &error.to_string()))
     }
 
@@ -346,10 +348,9 @@ impl Mechanism {
         inputs: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<StatesAndSlopes<'py>> {
         let (times, given, inputs) = (doubles(times)?, doubles(state)?, inputs.map(doubles).transpose()?);
-        if !(step > 0.0
-            && slice(&times).is_sorted()
-            && slice(&times).first().is_none_or(|&first| first >= 0.0))
-        {
+        let times = slice(&times).to_vec();
+        let is_time = |t: &f64| t.is_finite() && *t >= 0.0;
+        if !(step > 0.0 && times.is_sorted() && times.iter().all(is_time)) {
             return Err(errors::request(
                 py,
                 "increasing times from 0 on and a positive step were expected, s",
@@ -368,24 +369,43 @@ impl Mechanism {
         };
         let places: Vec<usize> = parameters.iter().map(place).collect::<PyResult<_>>()?;
         let values = inputs.as_ref().map_or(dynamics.defaults.clone(), |inputs| slice(inputs).to_vec());
-        let (schedule, state) = ((slice(&times), step), slice(&given));
-        let found =
-            py.detach(move || sensitivity::sensitivities(&dynamics, &values, state, schedule, &places));
-        let shape = [slice(&times).len(), state.len()];
+        let (shape, state) = ([times.len(), slice(&given).len()], slice(&given).to_vec());
+        let found = interruptible(py, move |stop| {
+            let from = (&state[..], &values[..]);
+            sensitivity::sensitivities(&dynamics, from, (&times, step), &places, stop)
+        })?;
         Ok((PyArray1::from_vec(py, found.states).reshape(shape)?, PyArray1::from_vec(py, found.slopes)))
+    }
+
+    /// Has cargo compile what batches need.
+    #[pyo3(name = "_compile")]
+    fn compile(&self, py: Python<'_>, native: bool) -> PyResult<()> {
+        let sizes = {
+            let mut state = self.ready(py)?;
+            let dynamics = state.dynamics();
+            let (parameters, inputs) = (self.page.parameters.len(), self.page.inputs.len());
+            Sizes { x: dynamics.n_x, u: dynamics.n_u, parameters, inputs }
+        };
+        let (file, page) = (self.file.clone(), self.page.clone());
+        let compiled =
+            interruptible(py, move |_| library::batches(&file, &page, &functions(false), sizes, native))?;
+        let mut state = self.ready(py)?;
+        state.many = vec![Many::by_cargo(compiled, state.dynamics())];
+        Ok(())
     }
 
     /// The Rust module, as `gyro generate` writes it, with what was proved of it in its head.
     fn generate(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| library::generate(&self.file, &self.page)).map_err(|failure| errors::raised(py, failure))
+        let (file, page) = (self.file.clone(), self.page.clone());
+        interruptible(py, move |_| library::generate(&file, &page))
     }
 
     /// Whether all is proved, the proof as text and as JSON.
     #[pyo3(name = "_proof")]
     fn proof(&self, py: Python<'_>, quick: bool) -> PyResult<(bool, String, String)> {
         let depth = if quick { Depth::Quick } else { Depth::Full };
-        let found = py.detach(|| library::verify(&self.file, &self.page, depth));
-        let (is_proved, text, object) = found.map_err(|failure| errors::raised(py, failure))?;
+        let (file, page) = (self.file.clone(), self.page.clone());
+        let (is_proved, text, object) = interruptible(py, move |_| library::verify(&file, &page, depth))?;
         Ok((is_proved, text, object.to_string()))
     }
 }
@@ -415,13 +435,13 @@ impl Mechanism {
             if let Some(what) = gyro_codegen::lacks_joint_coordinates(&self.page) {
                 let words = format!(
                     "this is for mechanisms with joint coordinates, and `{}` has {what}: simulate() runs it in maximal \
-                     ones",
+                     ones, and run[name] and run.rate(name) have the motion of its joints",
                     self.page.name
                 );
                 return Err(errors::request(py, &words));
             }
-            let compiled = py.detach(|| self.kernels.get(&self.page, &functions(false), Effort::Full));
-            let compiled = compiled.map_err(|failure: Failure| errors::raised(py, failure))?;
+            let (kernels, page) = (self.kernels.clone(), self.page.clone());
+            let compiled = interruptible(py, move |_| kernels.get(&page, &functions(false), Effort::Full))?;
             state.dynamics = Some(Dynamics::new(compiled, &state.model));
         }
         Ok(state)
@@ -434,15 +454,15 @@ impl State {
         self.dynamics.as_mut().expect("it is ready")
     }
 
-    fn pairs(&mut self, py: Python<'_>) -> PyResult<&mut Vec<Pair>> {
-        if self.pairs.is_empty() {
+    fn many(&mut self, py: Python<'_>) -> PyResult<&mut Vec<Many>> {
+        if self.many.is_empty() {
             let dynamics = self.dynamics().clone();
-            let pair = py
-                .detach(move || Pair::of(&dynamics))
+            let many = py
+                .detach(move || Many::in_process(&dynamics))
                 .map_err(|error| errors::request(py, &error.to_string()))?;
-            self.pairs.push(pair);
+            self.many.push(many);
         }
-        Ok(&mut self.pairs)
+        Ok(&mut self.many)
     }
 }
 

@@ -5,8 +5,11 @@ use gyro_cli::failure::Failure;
 use gyro_cli::library::{self, Stop};
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
 
 /// A run that was made: what `gyro_sim.Run` shows.
 #[pyclass(frozen, module = "gyro_sim._native")]
@@ -43,33 +46,48 @@ impl Run {
 
     /// How far it can be trusted, as JSON.
     fn verdict(&self, py: Python<'_>) -> PyResult<String> {
-        interruptible(py, |stop| self.0.verdict(stop)).map(|verdict| verdict.to_string())
+        let run = self.0.clone();
+        interruptible(py, move |stop| run.verdict(stop)).map(|verdict| verdict.to_string())
     }
 }
 
 /// How often Python is asked for signals.
 const PATIENCE: Duration = Duration::from_millis(20);
 
-/// Works without the interpreter's lock, until Python has a signal to handle.
-pub(crate) fn interruptible<R: Send>(
+/// How long work may go on that was asked to stop, before it is left to itself.
+const GRACE: Duration = Duration::from_millis(200);
+
+/// Enough for whatever can be derived: main threads have 8 MB.
+const STACK: usize = 64 << 20;
+
+/// Works on a thread of its own, without the interpreter's lock, until Python has a signal to handle. What does not ask
+/// whether to stop, such as deriving, is then left to itself.
+pub(crate) fn interruptible<R: Send + 'static>(
     py: Python<'_>,
-    work: impl FnOnce(Stop<'_>) -> Result<R, Failure> + Send,
+    work: impl FnOnce(Stop<'_>) -> Result<R, Failure> + Send + 'static,
 ) -> PyResult<R> {
-    let (raised, asked) = (Mutex::new(None), Mutex::new(Instant::now()));
-    let stop = || {
-        let mut asked = asked.lock().unwrap_or_else(PoisonError::into_inner);
-        if asked.elapsed() < PATIENCE {
-            return false;
-        }
-        *asked = Instant::now();
-        let error = Python::attach(|py| py.check_signals()).err();
-        let is_raised = error.is_some();
-        *raised.lock().unwrap_or_else(PoisonError::into_inner) = error;
-        is_raised
+    let (sender, receiver) = mpsc::sync_channel(1);
+    let is_over = Arc::new(AtomicBool::new(false));
+    let asked = is_over.clone();
+    let worker = move || {
+        // Nobody listens any more to what was left to itself.
+        let _ = sender.send(work(&|| asked.load(Ordering::Relaxed)));
     };
-    let outcome = py.detach(|| work(&stop));
-    match (outcome, raised.into_inner().unwrap_or_else(PoisonError::into_inner)) {
-        (Err(Failure::Interrupted(_)), Some(error)) => Err(error),
-        (outcome, _) => outcome.map_err(|failure| errors::raised(py, failure)),
+    thread::Builder::new().stack_size(STACK).spawn(worker)?;
+    let receiver = Mutex::new(receiver);
+    let wait = |patience| {
+        py.detach(|| receiver.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(patience))
+    };
+    loop {
+        match wait(PATIENCE) {
+            Ok(outcome) => return outcome.map_err(|failure| errors::raised(py, failure)),
+            Err(RecvTimeoutError::Timeout) => py.check_signals().inspect_err(|_| {
+                is_over.store(true, Ordering::Relaxed);
+                let _ = wait(GRACE);
+            })?,
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(errors::run(py, "this ended without a result, which is a mistake of gyro_sim"));
+            }
+        }
     }
 }

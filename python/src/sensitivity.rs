@@ -1,6 +1,8 @@
 //! How a motion depends on parameters: the generated functions in dual numbers, stepped along with their slopes.
 
 use crate::dynamics::Dynamics;
+use gyro_cli::failure::Failure;
+use gyro_cli::library::Stop;
 use gyro_jit::Interpreted;
 use gyro_runner::motion::COLUMNS;
 use gyro_sim::{Dual, Joint, JointSpace, Mechanism as _, Rk4};
@@ -13,14 +15,15 @@ pub(crate) struct Sensitivities {
     pub(crate) slopes: Vec<f64>,
 }
 
-/// From a state at t = 0 through increasing times, by Kutta's method of order 4 in steps of at most `step`.
+/// From a state at t = 0 with inputs through increasing times, by Kutta's method of order 4 in steps of at most `step`,
+/// until `stop` says so.
 pub(crate) fn sensitivities(
     dynamics: &Dynamics,
-    inputs: &[f64],
-    state: &[f64],
+    (state, inputs): (&[f64], &[f64]),
     (times, step): (&[f64], f64),
     parameters: &[usize],
-) -> Sensitivities {
+    stop: Stop<'_>,
+) -> Result<Sensitivities, Failure> {
     let n = state.len();
     let mut found =
         Sensitivities { states: Vec::new(), slopes: vec![0.0; times.len() * n * parameters.len()] };
@@ -40,7 +43,7 @@ pub(crate) fn sensitivities(
         let mut method = Rk4::new(&x);
         found.states.clear();
         for (row, &to) in times.iter().enumerate() {
-            t = advance(&mechanism, &mut method, (t, to, step), &mut x);
+            t = advance(&mechanism, &mut method, (t, to, step), &mut x, stop)?;
             found.states.extend(x[..n].iter().map(|number| number.value));
             for (k, number) in x[..n].iter().enumerate() {
                 let at = (row * n + k) * parameters.len() + first;
@@ -48,7 +51,7 @@ pub(crate) fn sensitivities(
             }
         }
     }
-    found
+    Ok(found)
 }
 
 /// Equal steps to a time; returns it.
@@ -57,12 +60,16 @@ fn advance(
     method: &mut Rk4<Vec<Number>>,
     (from, to, step): (f64, f64, f64),
     x: &mut Vec<Number>,
-) -> f64 {
+    stop: Stop<'_>,
+) -> Result<f64, Failure> {
     let n_steps = ((to - from) / step).ceil().max(0.0);
     let h = if n_steps > 0.0 { (to - from) / n_steps } else { 0.0 };
     let has_loops = !mechanism.joint_layout().closure_rows.is_empty();
     let mut done = 0.0;
     while done < n_steps {
+        if stop() {
+            return Err(Failure::Interrupted("interrupted".to_owned()));
+        }
         method.step(&Joint, mechanism, Number::new(from + done * h), Number::new(h), x);
         done += 1.0;
         if has_loops {
@@ -70,5 +77,5 @@ fn advance(
             mechanism.close_velocities(Number::new(from + done * h), x);
         }
     }
-    to
+    Ok(to)
 }

@@ -1,9 +1,11 @@
 //! Steps in a loop.
 
-use crate::arguments::{doubles, result, rows, slice};
-use crate::dynamics::{Dynamics, Pair};
+use crate::arguments::{doubles, result, rows, slice, tuple, writable};
+use crate::batch::{Many, PACK, threads};
+use crate::dynamics::Dynamics;
 use crate::errors;
 use gyro_jit::{Compiled, NotCompiled};
+use gyro_runner::batch::Inputs;
 use gyro_runner::describe_in;
 use gyro_sim::{CloseLoops, Error, Joint, JointSpace, Rk4};
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
@@ -30,6 +32,8 @@ struct Steps {
     rows: Option<usize>,
     /// Of each state (x, u), and the work where there is some.
     states: Vec<Vec<f64>>,
+    /// The inputs of each state, if they are not the same for all.
+    own: Option<Vec<f64>>,
     threads: Vec<Thread>,
 }
 
@@ -39,22 +43,20 @@ struct Thread {
     dynamics: Dynamics,
     method: Rk4<Vec<f64>>,
     loops: CloseLoops<Compiled<f64>>,
-    /// For many states of a mechanism without loops, two at a time.
-    pair: Option<Pair>,
+    /// For many states of a mechanism without loops, with these row after row.
+    many: Option<(Many, Vec<f64>)>,
 }
 
 /// Fewer states than these are not worth another thread.
 const SHARE: usize = 64;
 
+/// How many substeps of a state are taken before Python is asked for signals: some milliseconds.
+const AT_ONCE: u64 = 1 << 15;
+
 /// When steps begin, s, their length, and which ones are to be taken.
 type Steppings = ((f64, f64), Range<u64>);
 
 impl Thread {
-    fn set_inputs(&mut self, inputs: &[f64]) {
-        self.dynamics.set_inputs(inputs);
-        self.pair.iter_mut().for_each(|pair| pair.set_inputs([inputs; 2]));
-    }
-
     /// All states by some steps; `own` has the inputs of each, if they are not the same for all.
     fn advance(
         &mut self,
@@ -63,22 +65,21 @@ impl Thread {
         own: Option<&[f64]>,
     ) -> Result<(), Error> {
         let n_inputs = self.dynamics.defaults.len();
-        let inputs_of = |row: usize| own.map(|own| &own[row * n_inputs..][..n_inputs]);
-        let (pairs, rest) = match self.pair {
-            Some(_) => states.as_chunks_mut::<2>(),
-            None => (&mut [][..], states),
-        };
-        let n_paired = 2 * pairs.len();
-        for (k, [a, b]) in pairs.iter_mut().enumerate() {
-            let Some(pair) = &mut self.pair else { break };
-            if let (Some(a), Some(b)) = (inputs_of(2 * k), inputs_of(2 * k + 1)) {
-                pair.set_inputs([a, b]);
-            }
-            pair.advance(steps.0, steps.1.clone(), [a, b]);
+        if let Some((many, rows)) = &mut self.many {
+            let n = (self.dynamics.n_x + self.dynamics.n_u).max(1);
+            rows.resize(states.len() * n, 0.0);
+            rows.chunks_exact_mut(n).zip(&*states).for_each(|(to, from)| to.copy_from_slice(&from[..n]));
+            let inputs = match own {
+                Some(own) => Inputs::Own(own).of(0..states.len(), n_inputs),
+                None => Inputs::Same(self.dynamics.inputs()),
+            };
+            many.advance(steps.0, &steps.1, inputs, rows);
+            states.iter_mut().zip(rows.chunks_exact(n)).for_each(|(to, from)| to[..n].copy_from_slice(from));
+            return Ok(());
         }
-        for (k, x) in rest.iter_mut().enumerate() {
-            if let Some(inputs) = inputs_of(n_paired + k) {
-                self.dynamics.set_inputs(inputs);
+        for (row, x) in states.iter_mut().enumerate() {
+            if let Some(own) = own {
+                self.dynamics.set_inputs(&own[row * n_inputs..][..n_inputs]);
             }
             self.advance_one(steps, x)?;
         }
@@ -100,23 +101,40 @@ impl Thread {
 impl Stepper {
     pub(crate) fn new(
         dynamics: &Dynamics,
-        dt: f64,
-        substeps: u32,
+        (dt, substeps): (f64, u32),
         (rows, states): (Option<usize>, &[f64]),
+        by_cargo: Option<Many>,
     ) -> Result<Self, NotCompiled> {
         let n_state = dynamics.n_x + dynamics.n_u;
         let states: Vec<_> = states.chunks(n_state.max(1)).map(|state| dynamics.whole(state)).collect();
         let is_tree = dynamics.mechanism.joint_layout().closure_rows.is_empty();
+        let many = match by_cargo {
+            _ if !is_tree || states.len() < 2 => None,
+            None => Some(Many::in_process(dynamics)?),
+            by_cargo => by_cargo,
+        };
         let thread = Thread {
-            pair: (is_tree && states.len() > 1).then(|| Pair::of(dynamics)).transpose()?,
+            many: many.map(|many| (many, Vec::new())),
             method: Rk4::new(&dynamics.mechanism.joint_start()),
             loops: CloseLoops::new(&dynamics.mechanism),
             dynamics: dynamics.clone(),
         };
-        let n_threads = states.len().div_ceil(SHARE).clamp(1, rayon::current_num_threads());
+        let n_threads = match states.len().div_ceil(SHARE) {
+            0 | 1 => 1,
+            shares => shares.min(threads().current_num_threads()),
+        };
         let threads = vec![thread; n_threads];
-        let steps =
-            Steps { dt, substeps: substeps.max(1), done: 0, from: 0.0, n_state, rows, states, threads };
+        let steps = Steps {
+            dt,
+            substeps: substeps.max(1),
+            done: 0,
+            from: 0.0,
+            n_state,
+            rows,
+            states,
+            own: None,
+            threads,
+        };
         Ok(Self(Mutex::new(steps)))
     }
 }
@@ -127,66 +145,81 @@ impl Steps {
         self.from + self.done as f64 * (self.dt / f64::from(self.substeps))
     }
 
-    /// Advances all states; `own` has the inputs of each, if they are not the same for all.
-    fn step(&mut self, own: Option<&[f64]>) -> Result<(), Error> {
+    /// Advances all states by some substeps.
+    fn step(&mut self, substeps: u64) -> Result<(), Error> {
         let h = self.dt / f64::from(self.substeps);
-        let end = self.done + u64::from(self.substeps);
+        let end = self.done + substeps;
         let steps = ((self.from, h), self.done..end);
         let n_inputs = self.threads[0].dynamics.defaults.len();
+        let own = self.own.as_deref();
         if let [thread] = &mut self.threads[..] {
             thread.advance(&steps, &mut self.states, own)?;
         } else {
-            // Even, so that pairs do not straddle.
-            let share = self.states.len().div_ceil(self.threads.len()).next_multiple_of(2).max(2);
+            // Whole packs, so that none straddles.
+            let share = self.states.len().div_ceil(self.threads.len()).next_multiple_of(PACK).max(PACK);
             let parts = self.states.par_chunks_mut(share).zip(self.threads.par_iter_mut());
-            parts.enumerate().try_for_each(|(part, (states, thread))| {
-                thread.advance(&steps, states, own.map(|own| &own[part * share * n_inputs..]))
+            threads().install(|| {
+                parts.enumerate().try_for_each(|(part, (states, thread))| {
+                    thread.advance(&steps, states, own.map(|own| &own[part * share * n_inputs..]))
+                })
             })?;
         }
         self.done = end;
         Ok(())
     }
 
-    /// The states as an array, or written into one.
-    fn show<'py>(
+    /// Takes some substeps; without the interpreter's lock where it takes longer than to give it back.
+    fn take(&mut self, py: Python<'_>, substeps: u64) -> PyResult<()> {
+        let taken = match self.rows {
+            None if substeps < AT_ONCE => self.step(substeps),
+            _ => py.detach(|| self.step(substeps)),
+        };
+        taken.map_err(|error| {
+            let mechanism = &self.threads[0].dynamics.mechanism;
+            errors::run(py, &describe_in(mechanism, Some(mechanism.joint_layout()), &error))
+        })
+    }
+
+    /// An array for the states: the caller's, if it has one.
+    fn room<'py>(
         &self,
         py: Python<'py>,
         out: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let shape = [self.states.len(), self.n_state];
         let shape = if self.rows.is_some() { &shape[..] } else { &shape[1..] };
-        let out = match out {
-            None => PyArrayDyn::zeros(py, shape, false),
-            Some(out) => result(py, out, shape)?,
-        };
-        let mut numbers = out.try_readwrite()?;
-        for (to, from) in numbers.as_slice_mut()?.chunks_exact_mut(self.n_state.max(1)).zip(&self.states) {
-            to.copy_from_slice(&from[..self.n_state]);
-        }
-        drop(numbers);
+        let Some(out) = out else { return Ok(PyArrayDyn::zeros(py, shape, false)) };
+        let out = result(py, out, shape)?;
+        writable(&out)?;
         Ok(out)
     }
 
-    /// Sets the inputs that are the same for all; gives those of each state otherwise.
-    fn set_inputs<'a>(
-        &mut self,
-        py: Python<'_>,
-        inputs: &'a PyReadonlyArrayDyn<'_, f64>,
-    ) -> PyResult<Option<&'a [f64]>> {
+    /// Writes the states into an array of this shape.
+    fn show(&self, out: &Bound<'_, PyArrayDyn<f64>>) -> PyResult<()> {
+        let mut numbers = writable(out)?;
+        for (to, from) in numbers.as_slice_mut()?.chunks_exact_mut(self.n_state.max(1)).zip(&self.states) {
+            to.copy_from_slice(&from[..self.n_state]);
+        }
+        Ok(())
+    }
+
+    /// Sets the inputs: the same for all, or those of each state.
+    fn set_inputs(&mut self, py: Python<'_>, inputs: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<()> {
         let n_inputs = self.threads[0].dynamics.defaults.len();
         let values = slice(inputs);
-        match rows(py, "inputs", inputs.shape(), n_inputs)? {
+        self.own = match rows(py, "inputs", inputs.shape(), n_inputs)? {
             None => {
-                self.threads.iter_mut().for_each(|thread| thread.set_inputs(values));
-                Ok(None)
+                self.threads.iter_mut().for_each(|thread| thread.dynamics.set_inputs(values));
+                None
             }
-            found if found == self.rows => Ok(Some(values)),
+            found if found == self.rows => Some(values.to_vec()),
             found => {
                 let words =
                     format!("inputs have {} rows: one for each state was expected", found.unwrap_or(1));
-                Err(errors::request(py, &words))
+                return Err(errors::request(py, &words));
             }
-        }
+        };
+        Ok(())
     }
 }
 
@@ -205,22 +238,29 @@ impl Stepper {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let inputs = inputs.map(doubles).transpose()?;
         let mut steps = self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
-        let own = match &inputs {
-            Some(inputs) => steps.set_inputs(py, inputs)?,
-            None => None,
-        };
-        let stepped = match steps.rows {
-            None => steps.step(own),
-            Some(_) => {
-                let steps = &mut *steps;
-                py.detach(|| steps.step(own))
+        // Nothing moves if this cannot be told.
+        let out = steps.room(py, out)?;
+        if let Some(inputs) = &inputs {
+            steps.set_inputs(py, inputs)?;
+        }
+        let substeps = u64::from(steps.substeps);
+        let at_once = (AT_ONCE / steps.states.len().max(1) as u64).clamp(1, substeps);
+        let before = (at_once < substeps).then(|| (steps.done, steps.states.clone()));
+        let mut left = substeps;
+        loop {
+            steps.take(py, at_once.min(left))?;
+            left = left.saturating_sub(at_once);
+            if left == 0 {
+                steps.show(&out)?;
+                return Ok(out);
             }
-        };
-        stepped.map_err(|error| {
-            let mechanism = &steps.threads[0].dynamics.mechanism;
-            errors::run(py, &describe_in(mechanism, Some(mechanism.joint_layout()), &error))
-        })?;
-        steps.show(py, out)
+            if let Err(signal) = py.check_signals() {
+                if let Some(before) = before {
+                    (steps.done, steps.states) = before;
+                }
+                return Err(signal);
+            }
+        }
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {
@@ -244,7 +284,10 @@ impl Stepper {
     /// (x, u) now.
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner).show(py, None)
+        let steps = self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
+        let out = steps.room(py, None)?;
+        steps.show(&out)?;
+        Ok(out)
     }
 
     /// Goes on from another state, or others, at a time, with the model file's inputs.
@@ -254,17 +297,19 @@ impl Stepper {
         let mut steps = self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner);
         let n_state = steps.n_state;
         if rows(py, "state", given.shape(), n_state)? != steps.rows {
-            let words =
-                format!("state has the shape {:?}: that of the stepper's state was expected", given.shape());
+            let words = format!(
+                "a state of shape {}: that of the stepper's state was expected",
+                tuple(given.shape())
+            );
             return Err(errors::request(py, &words));
         }
         let numbers = slice(&given).chunks_exact(n_state.max(1));
         steps.states.iter_mut().zip(numbers).for_each(|(state, from)| state[..n_state].copy_from_slice(from));
         for thread in &mut steps.threads {
             let defaults = thread.dynamics.defaults.clone();
-            thread.set_inputs(&defaults);
+            thread.dynamics.set_inputs(&defaults);
         }
-        (steps.from, steps.done) = (t, 0);
+        (steps.own, steps.from, steps.done) = (None, t, 0);
         Ok(())
     }
 }

@@ -1,5 +1,6 @@
 """Accelerations, derivatives, linearisation and steps."""
 
+import shutil
 import warnings
 
 import numpy as np
@@ -154,8 +155,43 @@ def test_many_advance_as_each_alone(pendulum, rows):
         for _ in range(3):
             alone.step(inputs[k])
         assert (alone.state == found[k]).all()
+    # Inputs stay until others are given.
+    kept = pendulum.stepper(1e-2, states, substeps=3)
+    kept.step(inputs)
+    kept.step()
+    assert (kept.step() == found).all()
     many.restart(states)
     assert (many.step()[0] == pendulum.stepper(1e-2, states[0], substeps=3).step()).all()
+
+
+@pytest.mark.skipif(shutil.which("cargo") is None, reason="there is no cargo")
+def test_batches_are_compiled_by_cargo(pendulum, gimbal):
+    for mechanism in (pendulum, gimbal):
+        n = len(mechanism.coordinate_names)
+        x, u, states = SEED.normal(size=(999, n)), SEED.normal(size=(999, n)), SEED.normal(size=(999, 2 * n))
+        inputs = SEED.normal(size=(999, len(mechanism.inputs)))
+        found = mechanism.joint_accelerations(x, u, inputs), mechanism.stepper(1e-3, states).step(inputs)
+        for native in (False, True):
+            mechanism.compile(native=native)
+            again = mechanism.joint_accelerations(x, u, inputs), mechanism.stepper(1e-3, states).step(inputs)
+            for one, other in zip(found, again):
+                # What the processor fuses is rounded once less.
+                assert np.allclose(one, other, rtol=1e-11, atol=1e-11) if native else (one == other).all()
+    pendulum.compile(native=False)
+    pendulum.set(length=0.3)
+    again = gyro.loads(pendulum.source[0])
+    again.set(length=0.3)
+    x, u = SEED.normal(size=(5, 1)), SEED.normal(size=(5, 1))
+    assert (pendulum.joint_accelerations(x, u) == again.joint_accelerations(x, u)).all()
+
+
+def test_who_compiles_without_cargo_is_told(pendulum, monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CARGO", raising=False)
+    monkeypatch.setenv("GYRO_CACHE", str(tmp_path))
+    with pytest.raises(gyro.RunError, match="rustup.rs; all else works without it"):
+        pendulum.compile()
+    assert pendulum.joint_accelerations([[0.0]], [[0.0]]).shape == (1, 1)
 
 
 def test_modules_are_generated_and_proved(pendulum):

@@ -3,6 +3,8 @@
 import os
 import pickle
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -110,6 +112,17 @@ def test_ctrl_c_stops_a_run(pendulum):
     assert time.monotonic() - began < 5
 
 
+@pytest.mark.filterwarnings("ignore::gyro_sim.RunWarning")
+def test_ctrl_c_stops_while_equations_are_derived():
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    platform = gyro.load(MODELS / "stewart-platform.toml")
+    threading.Timer(0.05, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    began = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        platform.verify()
+    assert time.monotonic() - began < 5
+
+
 def test_other_threads_go_on_during_a_run(pendulum):
     count, done = 0, threading.Event()
     pendulum.simulate(0.1, step=1e-3)
@@ -153,6 +166,29 @@ def test_frames_and_plots(gimbal):
     figure = run.plot("alpha", "beta rate")
     assert [axis.get_ylabel() for axis in figure.axes] == ["rad", "rad/s"]
     assert len(run.plot().axes[0].lines) == 3
+
+
+WITHOUT_RUST = """
+import shutil, sys, warnings
+import numpy as np
+import gyro_sim as gyro
+warnings.simplefilter("ignore", gyro.RunWarning)
+assert not shutil.which("cargo") and not shutil.which("rustc")
+for file in sys.argv[1:]:
+    run = gyro.load(file).simulate(0.01, step=1e-3)
+    assert run.summary["engine"] == "jit", run.summary
+    print(np.array([run[name] for name in run.names]).tobytes().hex())
+"""
+
+
+@pytest.mark.filterwarnings("ignore::gyro_sim.RunWarning")
+def test_no_rust_is_needed(tmp_path):
+    files = [MODELS / f"{name}.toml" for name in ("gyroscope", "four-bar-revolute", "heavy-top", "free-body")]
+    words = [sys.executable, "-c", WITHOUT_RUST, *map(str, files)]
+    found = subprocess.run(words, env={"PATH": str(tmp_path)}, capture_output=True, text=True, check=True).stdout
+    for file, bytes_of_run in zip(files, found.splitlines(), strict=True):
+        run = gyro.load(file).simulate(0.01, step=1e-3)
+        assert np.array([run[name] for name in run.names]).tobytes().hex() == bytes_of_run, file
 
 
 def test_every_model_file_of_the_project_is_read():

@@ -12,6 +12,7 @@
 
 mod advice;
 mod approach;
+pub mod batch;
 pub mod child;
 mod companion;
 mod control;

@@ -170,15 +170,20 @@ impl Lab {
         Plan { settings, approach: curve.approach(setting, budget), measure_for }
     }
 
-    /// Makes a run, or returns the reason why it is not complete.
-    pub(crate) fn run(&mut self, who: (Engine, Precision), plan: &Plan) -> Result<Run, String> {
-        let request = Request {
+    /// What is asked of whoever makes a run.
+    pub(crate) fn request(&self, plan: &Plan) -> Request {
+        Request {
             settings: plan.settings,
             approach: plan.approach,
             parameters: self.parameters.clone(),
             start: self.start.clone(),
             measure_for: plan.measure_for,
-        };
+        }
+    }
+
+    /// Makes a run, or returns the reason why it is not complete.
+    pub(crate) fn run(&mut self, who: (Engine, Precision), plan: &Plan) -> Result<Run, String> {
+        let request = self.request(plan);
         let session = self.session(who)?;
         let mut samples = Vec::new();
         let answer = session.ask(&request, |event| {

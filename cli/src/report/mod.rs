@@ -11,6 +11,8 @@ mod chart;
 mod curve;
 mod data;
 mod drift;
+#[cfg(feature = "jit")]
+mod engines;
 mod explore;
 mod figures;
 mod goals;

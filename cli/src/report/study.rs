@@ -2,6 +2,8 @@
 
 use super::curve::{Curve, Point, Setting, Treatment};
 use super::drift::{Drift, drift};
+#[cfg(feature = "jit")]
+use super::engines::{Engines, engines};
 use super::explore;
 use super::goals::{self, Goal, Limit};
 use super::lab::Lab;
@@ -57,6 +59,9 @@ pub(crate) struct Study {
     /// What could not be determined about stability, as messages.
     pub(crate) troubles: Vec<String>,
     pub(crate) goals: Vec<Goal>,
+    /// rustc beside the engine that needs no compiler.
+    #[cfg(feature = "jit")]
+    pub(crate) engines: Result<Engines, String>,
     /// Seconds that all this has taken.
     pub(crate) took: f64,
     pub(crate) is_full: bool,
@@ -109,9 +114,29 @@ impl Study {
             progress.begin(&format!("{}: goals", lab.name), 1);
             goals.extend(stiff::goals(&mut lab)?);
         }
+        #[cfg(feature = "jit")]
+        let engines = {
+            progress.begin(&format!("{}: engines", lab.name), 1);
+            engines(&mut lab)?
+        };
         let took = began.elapsed().as_secs_f64();
         let is_full = effort.is_full;
-        Ok(Self { lab, truth, points, orders, drifts, long, knob, maps, troubles, goals, took, is_full })
+        Ok(Self {
+            lab,
+            truth,
+            points,
+            orders,
+            drifts,
+            long,
+            knob,
+            maps,
+            troubles,
+            goals,
+            #[cfg(feature = "jit")]
+            engines,
+            took,
+            is_full,
+        })
     }
 
     pub(crate) fn is_relative(&self) -> bool {

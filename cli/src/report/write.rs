@@ -3,6 +3,8 @@
 use super::best::{TARGETS, best, reasons, smallest_error};
 use super::curve::{Point, Treatment, who};
 use super::data;
+#[cfg(feature = "jit")]
+use super::engines;
 use super::figures::{self, Work};
 use super::goals;
 use super::order::WINDOW;
@@ -95,6 +97,8 @@ fn page(study: &Study, machine: &str, moving: Option<&str>) -> Page {
     }
     work_precision(study, &mut page);
     convergence(study, &mut page);
+    #[cfg(feature = "jit")]
+    engines::write(&study.engines, &mut page);
     drift(study, &mut page);
     stability(study, &mut page);
     failures(study, &mut page);

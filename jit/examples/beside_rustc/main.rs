@@ -1,6 +1,7 @@
 //! Mechanisms compiled in the process beside the same ones compiled by rustc, many to one program: `beside_rustc
-//! [--time] [FILE...] [FIRST_SEED COUNT]`. All functions and short runs must have the same bits; with `--time` it says
-//! what a call takes. The model files of seeds are random ones.
+//! [--time] [FILE...] [FIRST_SEED COUNT]`. All functions and short runs must have the same bits, and what Cranelift is
+//! given must be what the module says; with `--time` it says what a call takes. The model files of seeds are random.
+//! `--on COUNT` goes on where the last such call ended: `target/beside-rustc.next` has the seed.
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
 use gyro_codegen::{Functions, Module};
@@ -30,15 +31,30 @@ fn main() -> Result<(), Box<dyn Error>> {
         compare(&files, is_timed)?;
     }
     let numbers: Vec<u64> = arguments.iter().filter_map(|argument| argument.parse().ok()).collect();
-    let &[first, count] = &numbers[..] else { return Ok(()) };
+    let record = root()?.join("target/beside-rustc.next");
+    let goes_on = arguments.iter().any(|argument| argument == "--on");
+    let (first, count) = match numbers[..] {
+        [first, count] => (first, count),
+        [count] if goes_on => (fs::read_to_string(&record).map_or(Ok(0), |next| next.trim().parse())?, count),
+        _ => return Ok(()),
+    };
     let began = Instant::now();
     for from in (first..first + count).step_by(usize::try_from(BATCH)?) {
         let seeds = from..(from + BATCH).min(first + count);
         let random = |seed| Page { name: format!("page {seed}"), text: gyro_pages::page(seed), folder: None };
+        let next = seeds.end;
         compare(&seeds.map(random).collect::<Vec<_>>(), is_timed)?;
+        println!("seeds {from} to {}", next - 1);
+        if goes_on {
+            fs::write(&record, next.to_string())?;
+        }
     }
     println!("{count} random model files in {:.0} s", began.elapsed().as_secs_f64());
     Ok(())
+}
+
+fn root() -> Result<&'static Path, Box<dyn Error>> {
+    Ok(Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("no workspace")?)
 }
 
 fn of_file(path: &Path) -> Result<Page, Box<dyn Error>> {
@@ -48,7 +64,7 @@ fn of_file(path: &Path) -> Result<Page, Box<dyn Error>> {
 
 /// Writes a program with a module for each model file, compiles it and runs it.
 fn compare(pages: &[Page], is_timed: bool) -> Result<(), Box<dyn Error>> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("no workspace")?;
+    let root = root()?;
     let folder = std::env::temp_dir().join("gyro-beside-rustc");
     let began = Instant::now();
     let mut main = format!(
@@ -115,6 +131,7 @@ fn manifest(root: &Path, is_timed: bool) -> String {
         library("gyro-jit", "jit"),
         library("gyro-model", "model"),
         library("gyro-pages", "tests/pages"),
+        library("gyro-verifier", "verifier"),
     ];
     format!(
         "[package]\nname = \"beside-rustc\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n[dependencies]\n{}\

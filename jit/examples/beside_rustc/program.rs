@@ -6,6 +6,7 @@ use gyro_model::Model;
 use gyro_sim::{
     CorrectedDynamics, CorrectedSolution, Dynamics, JointSpace, Kinematics, Mechanism, Partition, Projection,
 };
+use gyro_verifier::{Clif, same_in_clif};
 use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
@@ -37,6 +38,7 @@ impl Program {
             + Partition,
     {
         let model = model(name, text, folder);
+        prove(name, &model);
         self.count(pair::check(name, &model, rustc.clone()));
         if self.is_timed {
             let ours = gyro_jit::compile::<f64>(&model, &Functions::of_solvers(), Effort::Full).unwrap();
@@ -56,6 +58,7 @@ impl Program {
             + JointSpace,
     {
         let model = model(name, text, folder);
+        prove(name, &model);
         self.count(pair::check_with_joints(name, &model, rustc.clone()));
         if self.is_timed {
             let ours = gyro_jit::compile::<f64>(&model, &Functions::of_solvers(), Effort::Full).unwrap();
@@ -87,6 +90,22 @@ fn model(name: &str, text: &str, folder: Option<&str>) -> Model {
         None => gyro_pages::load(table),
     };
     gyro_model::read_with(name, text, &mut load).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What Cranelift is given is read back and held against the module.
+fn prove(name: &str, model: &Model) {
+    let functions = Functions::of_solvers();
+    let module = gyro_codegen::generate_functions("page.toml", model, &functions).unwrap();
+    let scheduled = gyro_codegen::schedule(model, &functions, Effort::Full).unwrap();
+    let (mut given, mut tables) = (Vec::new(), Vec::new());
+    let mut told = |input: gyro_jit::Input<'_>| {
+        given.push((input.kernel.name(), input.clif));
+        tables = input.tables.to_vec();
+    };
+    gyro_jit::compile_scheduled::<f64>(model, scheduled, Some(&mut told)).unwrap();
+    let clif: Vec<Clif<'_>> = given.iter().map(|(name, text)| Clif { name, text, tables: &tables }).collect();
+    same_in_clif(model, (&module.code, &module.constants), &clif)
+        .unwrap_or_else(|refusal| panic!("{name}: {refusal}"));
 }
 
 fn time<M: Mechanism<Scalar = f64> + Dynamics>(name: &str, rustc: &M, ours: &gyro_jit::Compiled<f64>) {

@@ -79,6 +79,7 @@ fn mutants(line: &str) -> Vec<String> {
         ("icmp eq", "icmp ne"),
         ("call fn0", "call fn1"),
         ("call fn1", "call fn0"),
+        ("call fn4", "call fn1"),
     ] {
         replaced(from, to);
     }
@@ -95,6 +96,11 @@ fn mutants(line: &str) -> Vec<String> {
     if code.contains(" notrap aligned ") {
         let (head, offset) = code.rsplit_once('+').unwrap_or((code, "0"));
         mutants.push(format!("{head}+{}", offset.parse::<i64>().unwrap() + 8));
+    }
+    // Sine and cosine.
+    if let Some((names, call)) = code.split_once(" = call fn4") {
+        let (sine, cosine) = names.trim().split_once(", ").unwrap();
+        mutants.push(format!("    {cosine}, {sine} = call fn4{call}"));
     }
     // Operands.
     if ["fsub", "fdiv"].iter().any(|name| code.contains(name)) {
@@ -136,4 +142,21 @@ fn check(given: &Given, n_lines: usize) -> usize {
 fn every_change_of_what_cranelift_is_given_is_found() {
     let n = check(&Given::of("gyroscope-parameters"), 12) + check(&chain(), 40);
     assert!(n > 300, "{n}");
+}
+
+#[test]
+fn a_sine_that_became_a_cosine_is_found() {
+    let mut given = Given::of("gyroscope");
+    let n_functions = given.functions.len();
+    let (kernel, text) =
+        given.functions.iter().find(|(_, text)| text.contains(" = call fn4")).unwrap().clone();
+    let calls: Vec<String> =
+        text.lines().filter(|line| line.contains(" = call fn4")).map(String::from).collect();
+    assert_eq!(given.is_accepted(), Ok(n_functions));
+    for mutant in calls.iter().flat_map(|line| mutants(line).into_iter().map(move |mutant| (line, mutant))) {
+        let changed = text.replacen(&mutant.0[..], &mutant.1, 1);
+        let function = given.functions.iter_mut().find(|(other, _)| *other == kernel).unwrap();
+        function.1 = changed;
+        assert!(given.is_accepted().is_err(), "`{}` became `{}`", mutant.0, mutant.1);
+    }
 }

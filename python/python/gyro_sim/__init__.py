@@ -10,6 +10,7 @@ All units are SI: m, kg, s, rad, N, N m, J.
 
 from __future__ import annotations
 
+import errno
 import os
 import warnings
 from pathlib import Path
@@ -84,6 +85,8 @@ def from_urdf(
         options += ["--armature", repr(float(armature))]
     if wrenches:
         options += ["--wrenches", ",".join(wrenches)]
+    if not Path(path).exists():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(path))
     text, remarks = _native.convert_urdf(os.fspath(path), options)
     for remark in remarks:
         warnings.warn(_in_python(remark), RunWarning, stacklevel=2)

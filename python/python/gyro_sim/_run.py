@@ -132,11 +132,11 @@ class Run:
         There has to be a sample at that time: `simulate(every=…)` says when samples are.
         """
         near = int(np.argmin(np.abs(self.t - t)))
-        if abs(self.t[near] - t) > 1e-9 * max(abs(self.t[-1]), 1e-300):
+        if not abs(self.t[near] - t) <= 1e-9 * max(abs(self.t[-1]), 1e-300):
             from .errors import RequestError
 
             raise RequestError(
-                f"there is no sample at t = {t} s, the nearest is at {self.t[near]!r} s: choose the interval of samples "
+                f"there is no sample at t = {t} s, the nearest is at {self.t[near]:.12g} s: choose the interval of samples "
                 "with simulate(every=…)"
             )
         return self._mechanism._state_of(self._native, near)
@@ -158,12 +158,13 @@ class Run:
         import matplotlib.pyplot as plt
 
         chosen = list(names) or [name for name in self._values if f"{name} rate" in self._values]
-        units = dict.fromkeys(self.units[name] for name in chosen)
+        curves = {name: self[name] for name in chosen}
+        units = dict.fromkeys(self.units[name] for name in curves)
         figure, axes = plt.subplots(len(units) or 1, 1, sharex=True, squeeze=False)
         for axis, unit in zip(axes[:, 0], units):
-            for name in chosen:
+            for name, values in curves.items():
                 if self.units[name] == unit:
-                    axis.plot(self.t, self[name], label=name)
+                    axis.plot(self.t, values, label=name)
             axis.set_ylabel(unit)
             axis.legend()
         axes[-1, 0].set_xlabel("t, s")

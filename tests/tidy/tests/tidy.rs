@@ -93,6 +93,20 @@ fn no_file_is_long() {
     assert!(long.is_empty(), "more than {LINES} lines: split by meaning\n{}", long.join("\n"));
 }
 
+/// Workspace lints refuse `unsafe` wherever it is not allowed by name; what is shipped allows it where compiled code is
+/// called. Firmware and its interface in C are a workspace of their own.
+#[test]
+fn what_is_shipped_is_unsafe_in_one_file() {
+    let of_crates = CRATES.iter().chain(&["python", "show", "export", "schema"]);
+    let sources = of_crates.flat_map(|name| files(&root().join(name).join("src"), "rs"));
+    let is_unsafe = |path: &PathBuf| {
+        let text = fs::read_to_string(path).expect("a text");
+        ["unsafe {", "unsafe fn", "unsafe impl", "unsafe_code,"].iter().any(|word| text.contains(word))
+    };
+    let found: Vec<_> = sources.filter(is_unsafe).map(|path| shown(&path)).collect();
+    assert_eq!(found, ["jit/src/calls.rs"]);
+}
+
 #[test]
 fn no_line_of_prose_is_long() {
     let mut found = Vec::new();

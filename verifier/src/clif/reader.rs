@@ -182,6 +182,15 @@ impl Reader<'_> {
                 self.stored.insert((array, place), (value, line.number));
                 return Ok(Then::Next);
             }
+            // Sine and cosine of an angle.
+            [sine, cosine, "=", "call", function, angle] if self.functions.get(function) == Some(&4) => {
+                let angle = self.number(angle, line)?;
+                for (name, of) in [(sine, Function::Sin), (cosine, Function::Cos)] {
+                    let value = self.nodes.push(Node::Call(of, angle));
+                    self.held.insert(name.to_owned(), Held::Number(value));
+                }
+                return Ok(Then::Next);
+            }
             [_, "=", ref operation @ ..] => self.operation(operation, line)?,
             _ => return Err(refused(line)),
         };
