@@ -40,8 +40,8 @@ struct Wishes<'a> {
     limits: bool,
     /// Links that a force and a torque act on.
     wrenches: &'a [String],
-    /// Where the model file will be.
-    folder: &'a Path,
+    /// Where the model file will be, unless here.
+    folder: Option<&'a Path>,
 }
 
 /// Writes the model file and says what has no counterpart on it.
@@ -71,7 +71,7 @@ pub(crate) fn converted(args: &ImportArgs) -> Result<(String, Vec<String>), Fail
     let root = if args.floating { Root::Floating } else { Root::Fixed };
     let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let ImportArgs { motors, armature, limits, .. } = *args;
-    let folder = args.out.as_ref().unwrap_or(&args.file).parent().unwrap_or(Path::new(""));
+    let folder = args.out.as_ref().unwrap_or(&args.file).parent();
     let wishes = Wishes { root, motors, armature, limits, wrenches: &args.wrenches, folder };
     convert(&file, &shown, &text, wishes).map_err(Failure::Usage)
 }

@@ -8,7 +8,7 @@ use gyro_jit::{Compiled, NotCompiled};
 use gyro_runner::batch::Inputs;
 use gyro_runner::describe_in;
 use gyro_sim::{CloseLoops, Error, Joint, JointSpace, Rk4};
-use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{PyArrayDyn, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use rayon::prelude::*;

@@ -72,6 +72,7 @@ pub enum StartSlopes {
 struct Starts(Vec<Outset>);
 
 #[derive(Clone, SerBin, DeBin)]
+#[expect(clippy::large_enum_variant, reason = "almost all are starts")]
 enum Outset {
     At(Start),
     Impossible(String),

@@ -10,6 +10,7 @@ use super::{MARK, Wishes, wrenches};
 use crate::words;
 use nalgebra::{IsometryMatrix3, Point3, UnitQuaternion, Vector3};
 use std::fmt::Write as _;
+use std::path::Path;
 
 /// Rate at which Coulomb friction reaches tanh(1) of its level: URDF does not say. rad/s or m/s.
 const COULOMB_RATE: f64 = 0.01;
@@ -185,7 +186,11 @@ impl Page<'_> {
         for (place, link) in self.merged.places.iter().zip(&self.robot.links) {
             for shape in link.shapes.iter().filter(|_| place.body == index) {
                 let pose = settled(&(place.pose * shape.pose));
-                let _ = writeln!(text, "\n[[body.shape]]\n{}", shape.kind.text(self.wishes.folder));
+                let _ = writeln!(
+                    text,
+                    "\n[[body.shape]]\n{}",
+                    shape.kind.text(self.wishes.folder.unwrap_or(Path::new("")))
+                );
                 let _ = writeln!(text, "position = {}", vector(&pose.translation.vector));
                 let _ = writeln!(text, "orientation = {}", euler_parameters(&pose));
             }

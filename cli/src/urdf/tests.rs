@@ -2,14 +2,8 @@
 
 use super::*;
 
-const PLAIN: Wishes<'_> = Wishes {
-    root: Root::Fixed,
-    motors: false,
-    armature: None,
-    limits: false,
-    wrenches: &[],
-    folder: Path::new(""),
-};
+const PLAIN: Wishes<'_> =
+    Wishes { root: Root::Fixed, motors: false, armature: None, limits: false, wrenches: &[], folder: None };
 const FLOATING: Wishes<'_> = Wishes { root: Root::Floating, ..PLAIN };
 
 const LINKS: &str = r#"<robot name="r">
