@@ -39,8 +39,10 @@ fn commands(page: &str) -> Vec<Vec<String>> {
     let typed = blocks.lines().filter_map(|line| line.strip_prefix("$ "));
     let without = blocks_removed(page);
     let inline = without.split('`').skip(1).step_by(2).filter(|words| words.starts_with("cargo "));
-    let words =
-        |line: &str| line.split(" # ").next().unwrap().split_whitespace().map(str::to_owned).collect();
+    let words = |line: &str| {
+        let typed = line.split(" # ").next().unwrap();
+        shlex::split(typed).unwrap_or_else(|| panic!("`{typed}` has a quote without its other half"))
+    };
     typed.chain(inline).map(words).collect()
 }
 

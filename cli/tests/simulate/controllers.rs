@@ -127,9 +127,6 @@ fn what_controllers_do_not_go_with_is_refused_or_said() {
     let run = |args: &[&str]| simulate(&folder, &[&["wheel.toml", "--engine", "jit"], args].concat());
     refused(&run(&["--input", "torque=1"]), "the controller `hold` sets this input");
     refused(&run(&["--step", "0.1"]), "longer than the period of a controller");
-    let study = "format = 1\nmodel = \"wheel.toml\"\nname = \"study\"\nscenarios = 2\n[[vary]]\nparameter = \"kp\"\nvalues = [1, 2]\n";
-    fs::write(folder.0.join("study.toml"), study).unwrap();
-    refused(&xtask(&folder, &["sweep", "study.toml"]), "cannot close loops");
     let exported = xtask(&folder, &["export", "c", "wheel.toml", "--out", "c"]);
     let said = String::from_utf8_lossy(&exported.stderr);
     assert!(exported.status.success() && said.contains("leaves out 1 controller"), "{said}");

@@ -114,6 +114,15 @@ fn mutants(line: &str) -> Vec<String> {
     mutants
 }
 
+/// Whether a line loads a number that nothing reads: the angle of a sine whose cosine was computed before, with it.
+/// Cranelift leaves such a load out.
+fn is_in_vain(line: &str, text: &str) -> bool {
+    let is_word = |c: char| c.is_ascii_alphanumeric();
+    line.split_once(" = load.").is_some_and(|(value, _)| {
+        text.split(|c| !is_word(c)).filter(|word| *word == value.trim()).count() == 1
+    })
+}
+
 /// Tries mutants of so many lines of each function.
 fn check(given: &Given, n_lines: usize) -> usize {
     let mut n_found = 0;
@@ -123,7 +132,7 @@ fn check(given: &Given, n_lines: usize) -> usize {
         assert_eq!(as_given, Ok(()), "{}", kernel.name());
         let lines: Vec<&str> = text.lines().collect();
         let step = lines.len().div_ceil(n_lines);
-        for at in (0..lines.len()).step_by(step) {
+        for at in (0..lines.len()).step_by(step).filter(|&at| !is_in_vain(lines[at], text)) {
             for mutant in mutants(lines[at]) {
                 let mut changed = lines.clone();
                 changed[at] = &mutant;
