@@ -112,8 +112,8 @@ fn mistakes_are_found_before_the_run() {
     assert_eq!(fs::read_to_string(&page).unwrap(), "mine");
 }
 
-/// A tetrahedron with its right angle at the origin and edges of 2, as each format has it: with a hundred times its size
-/// and centimetres as its unit in COLLADA.
+/// A tetrahedron with its right angle at the origin and edges of 2, as each format has it: with a hundred times its
+/// size and centimetres as its unit in COLLADA.
 const CORNERS: [[f32; 3]; 4] = [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
 const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 

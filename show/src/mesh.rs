@@ -12,10 +12,9 @@ const CELLS: (u32, u32) = (1 << 14, 8);
 
 /// How vertices are written; the grid is as fine at most.
 const VERTEX: Rounding = Rounding::Bits(15);
-
-/// A surface of triangles. Vertices that share a cell of a grid are one, the mean of them, and triangles that lose an
-/// edge by that are left out (Rossignac and Borrel 1993); the grid is the finest, down to a 16 000th of the mesh's longest
-/// edge, that leaves 20 000 triangles or fewer.
+///  A surface of triangles. Vertices that share a cell of a grid are one, the mean of them, and triangles that lose an
+/// edge by that are left out (Rossignac and Borrel 1993); the grid is the finest, down to a 16 000th of the mesh's
+/// longest edge, that leaves 20 000 triangles or fewer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     vertices: Vec<[f64; 3]>,
@@ -23,8 +22,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The surface with these vertices, in the mesh's own unit, and triangles of their indices; a triangle with a vertex
-    /// that is not there or not finite is left out. `None` if no triangle is left.
+    /// The surface with these vertices, in the mesh's own unit, and triangles of their indices; a triangle with a
+    /// vertex that is not there or not finite is left out. `None` if no triangle is left.
     #[must_use]
     pub fn new(vertices: &[[f32; 3]], triangles: &[[u32; 3]]) -> Option<Self> {
         let is_good = |k: &u32| vertices.get(*k as usize).is_some_and(|v| v.iter().all(|x| x.is_finite()));

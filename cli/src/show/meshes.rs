@@ -71,8 +71,8 @@ pub(crate) fn mesh(path: &Path) -> io::Result<Mesh> {
     Mesh::new(&vertices, &triangles).ok_or_else(empty)
 }
 
-/// Binary STL files may begin with the word by which the parser knows text, as their first 80 bytes are anything. They are
-/// known by their length, 50 bytes for each of the triangles that they count, and get other first bytes.
+/// Binary STL files may begin with the word by which the parser knows text, as their first 80 bytes are anything. They
+/// are known by their length, 50 bytes for each of the triangles that they count, and get other first bytes.
 fn told_apart(mut bytes: Vec<u8>) -> Vec<u8> {
     const WORD: &[u8] = b"solid";
     const COUNT: std::ops::Range<usize> = 80..84;

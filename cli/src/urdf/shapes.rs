@@ -80,8 +80,8 @@ impl Kind {
 const MESHES: [&str; 3] = ["stl", "obj", "dae"];
 
 /// The file that a robot names, if it is there and can be drawn. `package://NAME/…` is looked for in the folders above
-/// the robot and, as ROS does, in those of `ROS_PACKAGE_PATH`, where a package is a folder of its name; any other path is
-/// relative to the robot.
+/// the robot and, as ROS does, in those of `ROS_PACKAGE_PATH`, where a package is a folder of its name; any other path
+/// is relative to the robot.
 fn found(robot: &Path, name: &str) -> Option<PathBuf> {
     let beside = robot.parent().unwrap_or(Path::new(""));
     let candidates: Vec<PathBuf> = match name.split_once("://") {
