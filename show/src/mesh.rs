@@ -12,7 +12,8 @@ const CELLS: (u32, u32) = (1 << 14, 8);
 
 /// How vertices are written; the grid is as fine at most.
 const VERTEX: Rounding = Rounding::Bits(15);
-///  A surface of triangles. Vertices that share a cell of a grid are one, the mean of them, and triangles that lose an
+
+/// A surface of triangles. Vertices that share a cell of a grid are one, the mean of them, and triangles that lose an
 /// edge by that are left out (Rossignac and Borrel 1993); the grid is the finest, down to a 16 000th of the mesh's
 /// longest edge, that leaves 20 000 triangles or fewer.
 #[derive(Clone, Debug, Default, PartialEq)]
