@@ -12,7 +12,7 @@ pub trait Native: Scalar + Send + Sync + 'static {
     /// The time as it is passed.
     fn time(&self) -> Self::Time;
     /// The addresses of sine, cosine, hyperbolic tangent, angle, and sine with cosine, in the order of
-    /// [`crate::clif::FUNCTIONS`], as a module that rustc compiles calls them. The last one only where it is called.
+    /// `clif::FUNCTIONS`, as a module that rustc compiles calls them. The last one only where it is called.
     fn functions() -> Vec<*const u8>;
 }
 
