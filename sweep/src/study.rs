@@ -38,6 +38,10 @@ pub struct Study {
     pub slopes: Vec<(String, String)>,
     /// Name and unit of each series.
     pub series: Vec<(String, String)>,
+    /// Whether there are series that are kept for themselves, not for quantiles alone.
+    pub has_series: bool,
+    /// Name and no unit of each derivative of a sample of them.
+    pub series_slopes: Vec<(String, String)>,
     /// The series of which quantiles are wanted, by their index; they come first.
     pub quantiles: usize,
 }
@@ -172,7 +176,9 @@ fn page<F: Files>(
         targets: varied.names,
         numbers: kept.numbers,
         slopes: kept.slopes,
+        has_series: kept.has_series(),
         series: kept.series,
+        series_slopes: kept.series_slopes,
         quantiles: kept.quantiles,
     }))
 }

@@ -84,6 +84,7 @@ proptest! {
         // Two passages and extremes of other quantities than last values.
         job.keep.finals = vec![0, 2];
         job.keep.series = vec![0, 1, 2];
+        job.keep.sloped = vec![2, 0];
         for (target, part) in starts.iter().zip([parts.0, parts.1, parts.2]) {
             let index = job.plan.targets.len();
             job.plan.targets.push(target.clone());
@@ -97,6 +98,7 @@ proptest! {
         let mut source = Source::new(&job.plan);
         let mut values = vec![0.0; n];
         let mut judged = 0;
+        let samples = job.times().len();
         for (k, row, error) in packed.rows() {
             prop_assert_eq!(error, None);
             source.write(k, &mut values);
@@ -104,6 +106,8 @@ proptest! {
             let plain = numbers(&job, vec![values.clone()]);
             let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
             prop_assert_eq!(bits(&row[..count]), bits(&plain[0][..count]));
+            let [_, series_slopes, series] = job.keep.apart(row, samples);
+            prop_assert_eq!(bits(series), bits(&plain[0][count..]));
             for target in 0..n {
                 let h = APART * job.plan.scale(target);
                 let shifted = |parts: f64| {
@@ -112,6 +116,22 @@ proptest! {
                     values
                 };
                 let near = numbers(&job, [-2.0, -1.0, 1.0, 2.0].map(shifted).to_vec());
+                for (place, found) in series_slopes.iter().skip(target).step_by(n).enumerate() {
+                    let (sample, column) = (place / 2, job.keep.sloped[place % 2]);
+                    let [a, b, c, d] = [0, 1, 2, 3].map(|k| near[k][count + 3 * sample + column]);
+                    let scale = job.plan.scale(target);
+                    let [near, far] = [(c - b) / (2.0 * h), (d - a) / (4.0 * h)].map(|slope| slope * scale);
+                    let (found, expected) = (found * scale, (4.0 * near - far) / 3.0);
+                    // A scale that is far beyond the others' makes differences of what is not a line.
+                    if (near - far).abs() > 1e-3 * (1.0 + expected.abs()) {
+                        continue;
+                    }
+                    prop_assert!(
+                        (found - expected).abs() < 2e-7 * (1.0 + expected.abs()),
+                        "scenario {}, sample {}, column {}, target {}: {} {}",
+                        k, sample, column, target, found, expected
+                    );
+                }
                 // Where an extreme or a passage moves on to another sample it has a kink.
                 let is_kinked = near.iter().any(|row| samples_of(&job, row) != samples_of(&job, &plain[0]));
                 for number in 0..count {
