@@ -167,6 +167,7 @@ fn page<F: Files>(
     let plan =
         Plan { seed, sampling, targets: varied.targets, axes: varied.axes, draws: varied.draws, repeats };
     check(reader, &whole, &plan, block);
+    let has_series = kept.has_series();
     Ok(Some(Study {
         model,
         plan,
@@ -175,8 +176,8 @@ fn page<F: Files>(
         block: u32::try_from(block).unwrap_or(BLOCK),
         targets: varied.names,
         numbers: kept.numbers,
+        has_series,
         slopes: kept.slopes,
-        has_series: kept.has_series(),
         series: kept.series,
         series_slopes: kept.series_slopes,
         quantiles: kept.quantiles,

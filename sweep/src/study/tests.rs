@@ -22,7 +22,11 @@ impl Files for Bench {
             inputs: vec![("motor".to_owned(), 0.0), ("brake".to_owned(), 0.0)],
             controllers: if path == "closed.toml" { vec![("hold".to_owned(), vec![1])] } else { Vec::new() },
             starts: vec![start],
-            columns: vec![named("hinge", Quantity::Position(0)), named("hinge rate", Quantity::Rate(0))],
+            columns: vec![
+                named("hinge", Quantity::Position(0)),
+                named("hinge rate", Quantity::Rate(0)),
+                named("constraint violation", Quantity::Violation),
+            ],
         })
     }
 
