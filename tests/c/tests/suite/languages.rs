@@ -40,10 +40,12 @@ fn in_julia(c: &str) -> &'static str {
     }
 }
 
-/// `const double *x` without its name.
-fn type_of(declaration: &str) -> &str {
-    let name = declaration.rfind(|c: char| !c.is_alphanumeric() && c != '_').expect("a type goes before a name");
-    &declaration[..=name]
+/// `const double *x` without its name; `double x[2]` is a `double *`.
+fn type_of(declaration: &str) -> String {
+    let (declaration, array) = declaration.split_once('[').map_or((declaration, ""), |(of, _)| (of, "*"));
+    let name =
+        declaration.rfind(|c: char| !c.is_alphanumeric() && c != '_').expect("a type goes before a name");
+    format!("{}{array}", &declaration[..=name])
 }
 
 /// A function's types in Julia: of its arguments, then of its result.
@@ -54,7 +56,7 @@ fn declared(header: &str, name: &str) -> Vec<&'static str> {
     let (head, arguments) = declaration.split_once('(').expect("it is a function");
     let arguments = arguments.trim_end().trim_end_matches(')');
     let arguments = arguments.split(',').filter(|argument| argument.trim() != "void");
-    arguments.map(|argument| in_julia(type_of(argument))).chain([in_julia(type_and_name(head).0)]).collect()
+    arguments.map(|argument| in_julia(&type_of(argument))).chain([in_julia(type_and_name(head).0)]).collect()
 }
 
 fn type_and_name(head: &str) -> (&str, &str) {
@@ -115,8 +117,9 @@ fn constants_are_those_of_the_header() {
     let (values, names): (Vec<&str>, Vec<&str>) = block(PAGE, "julia").lines().filter_map(of_line).unzip();
     assert!(names.len() > 4, "{names:?}");
     let lines: String = names.iter().map(|name| format!("    printf(\"%d\\n\", (int){name});\n")).collect();
-    let text =
-        format!("#include \"pendulum.h\"\n#include <stdio.h>\nint main(void)\n{{\n{lines}    return 0;\n}}\n");
+    let text = format!(
+        "#include \"pendulum.h\"\n#include <stdio.h>\nint main(void)\n{{\n{lines}    return 0;\n}}\n"
+    );
     let Some(program) = program(PENDULUM, Precision::F64, ("constants", &text), &[]) else { return };
     let output = Command::new(program).output().expect("the program starts");
     assert_eq!(String::from_utf8_lossy(&output.stdout).lines().collect::<Vec<_>>(), values);

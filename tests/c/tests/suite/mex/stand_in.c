@@ -65,9 +65,10 @@ static int is_refused(const char *words, int n_given, const mxArray *times, cons
 
 int main(void)
 {
-    double at[5], past[2] = {0.2, 0.1}, length[2] = {0.4, 0.4}, nan = NAN;
+    double at[5], past[2] = {0.2, 0.1}, length[2] = {0.4, 0.4}, nan = NAN, infinite = INFINITY;
     const mxArray times = {1, 5, at, true}, parameters = {1, 1, length, true}, backwards = {1, 2, past, true};
     const mxArray two = {1, 2, length, true}, single = {1, 1, length, false}, none = {1, 1, &nan, true};
+    const mxArray never = {1, 1, &infinite, true};
     mxArray *results[1];
     const mxArray *given[2] = {&times, &parameters};
     for (int k = 0; k < 5; k++)
@@ -75,8 +76,9 @@ int main(void)
     if (!is_refused("pendulum:usage", 1, &times, &parameters) || !is_refused("pendulum:usage", 2, &times, &two)
         || !is_refused("pendulum:usage", 2, &times, &single) || !is_refused("pendulum:usage", 2, &single, &parameters)
         || !is_refused("parameter 1 cannot be nan", 2, &times, &none)
-        || !is_refused("time is not finite", 2, &none, &parameters)
-        || !is_refused("pendulum:solver", 2, &backwards, &parameters))
+        || !is_refused("times begin at 0 s", 2, &none, &parameters)
+        || !is_refused("unlike 0.1 s", 2, &backwards, &parameters)
+        || !is_refused("pendulum:solver: a time is not finite", 2, &never, &parameters))
         return 1;
     if (setjmp(caller) != 0) {
         printf("%s\n", message);
