@@ -300,6 +300,7 @@ export function forms(scene) {
   };
   const parts = bodies.map((_, b) => formOf(b));
   return {
+    isWheel: rotors.some(Boolean) && joints.length === 1,
     hasTop: parts.some((each) => each.some(({ type }) => type === 'cone')),
     size: nested && isNest ? 2 * RING_STEP * widest : size,
     thick,

@@ -47,7 +47,8 @@ export function direction(scene, up, form) {
     planar.addScaledVector(up, -planar.dot(up)).normalize();
     if (planar.dot(new Vector3(1, 1.1, 1.2)) < 0) planar.negate();
     const right = up.clone().cross(planar);
-    return planar.addScaledVector(up, 0.3).addScaledVector(right, 0.42).normalize();
+    // What a wheel turns on is behind or before it.
+    return planar.addScaledVector(up, 0.3).addScaledVector(right, form.isWheel ? 1.2 : 0.42).normalize();
   }
   // Across the lean of a top, which otherwise hides the tip that it spins on.
   const lean = leaning(scene, up, form);
