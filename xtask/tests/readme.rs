@@ -75,8 +75,8 @@ impl Drop for Folder {
     }
 }
 
-/// Files that a command reads are there, but those that it makes itself (`gyro new NAME && ...`) or that one before it on
-/// the page has made.
+/// Files that a command reads are there, but those that it makes itself (`gyro new NAME && ...`) or that one before
+/// it on the page has made.
 fn files_are_there(page: &str, command: &[String], made: &mut Vec<String>) {
     let writes = command.iter().position(|word| word == "--out").map(|at| at + 1);
     made.extend(command.windows(2).filter(|pair| pair[0] == "new").map(|pair| format!("{}.toml", pair[1])));
@@ -99,8 +99,8 @@ fn compiles_to_wasm() -> bool {
     ["clang", "wasm-ld"].iter().all(|tool| Command::new(tool).arg("--version").output().is_ok())
 }
 
-/// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; of the long ones nothing
-/// but that their options are known. What `new` makes is there for the commands after it.
+/// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; of the long ones
+/// nothing but that their options are known. What `new` makes is there for the commands after it.
 fn run(command: &[String], folder: &Path) -> Output {
     let made = folder.join("made");
     let elsewhere = |path: &str| made.join(Path::new(path).file_name().unwrap()).display().to_string();

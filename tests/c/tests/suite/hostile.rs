@@ -1,5 +1,5 @@
-//! Calls that nobody should make: in C under sanitizers, of the ES module under Node. None of them crashes, reads what it
-//! should not, is undefined, or changes what it should not.
+//! Calls that nobody should make: in C under sanitizers, of the ES module under Node. None of them crashes, reads
+//! what it should not, is undefined, or changes what it should not.
 
 use crate::program::program;
 use crate::target::{es_module, tool};
