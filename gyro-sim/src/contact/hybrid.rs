@@ -8,6 +8,7 @@ use crate::events::{Found, first_falling};
 use crate::integrate::Method;
 use crate::solver::Mark;
 use crate::{Control, Correction, Error, Real, Solver, Statistics, Uncorrected};
+use core::cell::Cell;
 
 /// What contacts have done so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +41,8 @@ pub struct Hybrid<D, S, T, A, C, const N: usize> {
     pub(super) changes: [Change<T>; N],
     /// How many events have come without a step between them.
     pub(super) stalled: u32,
+    /// Why there is no way on from here.
+    pub(super) failure: Option<Error>,
 }
 
 /// What a contact has done at an event.
@@ -91,7 +94,8 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         y: &S,
     ) -> Self {
         let zero = T::constant(0.0);
-        let equations = Contacts { dynamics, contacts, phases: [Phase::Free; N], largest: zero };
+        let equations =
+            Contacts { dynamics, contacts, phases: [Phase::Free; N], largest: zero, jam: Cell::new(None) };
         Self {
             solver: Solver::with_correction(equations, method, Kept(correction), t, y),
             mark: Mark::new(t, y),
@@ -102,6 +106,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
             pending: None,
             changes: [Change { hit: None, phases: [Phase::Free; 2] }; N],
             stalled: 0,
+            failure: None,
         }
     }
 
@@ -147,6 +152,11 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         &self.solver.correction().0
     }
 
+    /// The equations without contacts.
+    pub fn dynamics(&self) -> &D {
+        &self.solver.dynamics().dynamics
+    }
+
     /// The equations without contacts, to be changed where they hold data of their own: see
     /// [`Hybrid::system_has_changed`].
     pub fn dynamics_mut(&mut self) -> &mut D {
@@ -171,13 +181,29 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         D: Forced<M, Scalar = T, State = S>,
     {
         let at = (self.solver.time(), self.solver.state());
-        self.solver.dynamics().forces(model, at, &mut self.scratch[0])
+        self.solver.dynamics().forces(model, at, &mut self.scratch[0]).forces
+    }
+
+    /// The same at a time within the last step, as [`Hybrid::interpolate`] has the state.
+    ///
+    /// # Errors
+    /// As [`Solver::interpolate`].
+    pub fn forces_at<M>(&mut self, model: &M, t: T) -> Result<[T; N], Error>
+    where
+        D: Forced<M, Scalar = T, State = S>,
+        A: Method<Contacts<D, T, N>, M>,
+        C: Correction<D, M>,
+    {
+        let mut y = self.solver.state().clone();
+        self.interpolate(model, t, &mut y)?;
+        Ok(self.solver.dynamics().forces(model, (t, &y), &mut self.scratch[0]).forces)
     }
 
     /// Goes on until `t_end`, through all events on the way.
     ///
     /// # Errors
-    /// [`Error`] of the solver; [`Error::StepTooShort`] if events follow each other without time between them.
+    /// [`Error`] of the solver; [`Error::StepTooShort`] if events follow each other without time between them;
+    /// [`Error::Jammed`] if the forces of contacts are not determined.
     pub fn advance_to<M>(&mut self, model: &M, t_end: T) -> Result<(), Error>
     where
         D: Forced<M, Scalar = T, State = S>,
@@ -216,9 +242,8 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         A: Method<Contacts<D, T, N>, M>,
         C: Correction<D, M>,
     {
-        self.resolve(model);
-        self.solver.mark(&mut self.mark);
-        self.solver.step_towards(model, t_end)?;
+        self.begin(model)?;
+        self.solver.step_towards(model, t_end).map_err(|error| self.reason(error))?;
         self.pin();
         let h = self.solver.last_step();
         let Some(next) = self.find(model)? else {
@@ -276,9 +301,8 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         A: Method<Contacts<D, T, N>, M>,
         C: Correction<D, M>,
     {
-        self.resolve(model);
-        self.solver.mark(&mut self.mark);
-        self.solver.step(model, h)?;
+        self.begin(model)?;
+        self.solver.step(model, h).map_err(|error| self.reason(error))?;
         self.pin();
         let guards = self.guards(model);
         let is_passed = guards.as_ref().iter().any(|guard| *guard < T::constant(0.0));
@@ -321,6 +345,31 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         self.solver.correct(model)?;
         self.pin();
         Ok(())
+    }
+
+    /// Begins a step where there is a way on.
+    fn begin<M>(&mut self, model: &M) -> Result<(), Error>
+    where
+        D: Forced<M, Scalar = T, State = S>,
+    {
+        self.resolve(model);
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        self.solver.dynamics().jam.set(None);
+        self.solver.mark(&mut self.mark);
+        Ok(())
+    }
+
+    /// Where friction may jam no step leads on, for this one reason.
+    fn reason(&self, error: Error) -> Error {
+        let equations = self.solver.dynamics();
+        match (error, equations.jam.get()) {
+            (Error::NotFinite { .. } | Error::StepTooShort { .. }, Some(jam)) => {
+                equations.jammed(self.mark.time(), &jam)
+            }
+            _ => error,
+        }
     }
 
     /// Closing loops moves all coordinates by rounding, but not those that are held.
@@ -416,7 +465,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         C: Correction<D, M>,
     {
         self.solver.rewind(&self.mark);
-        self.solver.step(model, h)?;
+        self.solver.step(model, h).map_err(|error| self.reason(error))?;
         self.pin();
         Ok(self.guards(model).0[next.kind][next.contact])
     }

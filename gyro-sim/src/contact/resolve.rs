@@ -1,9 +1,10 @@
 //! Impacts, and which phases follow an event.
 
 use super::equations::{Contacts, Forced, LARGE, Local, bounds};
+use super::loads::{Acting, Jam, Loads};
 use super::small::solve;
 use super::{Contact, Phase};
-use crate::Real;
+use crate::{Error, Real};
 
 /// Inequalities may be violated by this part of what stands in them: they are computed from roots that are rounded.
 const ROUNDING: f64 = 1e-10;
@@ -106,13 +107,17 @@ fn options<T: Real>(contact: &Contact<T>, x: T, is_reached: bool) -> Options {
 
 impl<D, T: Real, const N: usize> Contacts<D, T, N> {
     /// The phases that are consistent with a state; the bounds of some have just been reached.
+    ///
+    /// # Errors
+    /// [`Error::Jammed`] if none are.
     pub(super) fn choose<M>(
         &mut self,
         model: &M,
         (t, y): (T, &D::State),
         reached: &[bool; N],
         scratch: &mut D::State,
-    ) where
+    ) -> Result<(), Error>
+    where
         D: Forced<M, Scalar = T>,
     {
         let zero = T::constant(0.0);
@@ -133,18 +138,25 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         });
         if options.iter().all(|(_, n)| *n == 1) {
             self.phases = options.map(|(phases, _)| phases[0]);
-            return;
+            return Ok(());
         }
         let acting = self.contacts.map(|contact| contact.acts());
         let local = self.local(model, (t, y), &acting, scratch);
-        let scale = self.scale(&local);
+        let loads = self.loads(model, (t, y), &acting);
+        let scale = self.scale(&local, loads.as_ref());
         self.largest = if scale > self.largest { scale } else { self.largest };
         let scale = self.largest;
         let mut best: Option<(T, [Phase; N])> = None;
+        let mut jam = None;
         let mut choice = [0; N];
         loop {
             self.phases = core::array::from_fn(|k| options[k].0[choice[k]]);
-            let violation = self.violation(&local, &options, values);
+            let acting = self.acting(&local, loads.as_ref());
+            jam = jam.or(acting.jam);
+            let violation = match acting.jam {
+                Some(_) => T::constant(f64::INFINITY),
+                None => self.violation(&local, &acting, &options, values),
+            };
             if best.is_none_or(|(least, _)| violation < least) {
                 best = Some((violation, self.phases));
             }
@@ -153,28 +165,45 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
                 break;
             }
         }
-        if let Some((_, phases)) = best {
-            self.phases = phases;
+        let (violation, phases) = best.unwrap_or((zero, self.phases));
+        self.phases = phases;
+        if violation <= T::constant(UNMET) * scale {
+            return Ok(());
         }
+        let first = options.iter().position(|(_, n)| *n > 1).unwrap_or(0);
+        Err(self.jammed(t, &jam.unwrap_or(Jam { contact: first, gain: 0.0 })))
+    }
+
+    /// Friction that may jam, or phases none of which are consistent, as an error.
+    pub(super) fn jammed(&self, t: T, jam: &Jam) -> Error {
+        let index = u16::try_from(self.contacts[jam.contact].coordinate).unwrap_or(u16::MAX);
+        Error::Jammed { t: t.to_f64(), index, gain: jam.gain }
     }
 
     /// The size of the accelerations that are compared.
-    fn scale(&self, local: &Local<T, N>) -> T {
+    fn scale(&self, local: &Local<T, N>, loads: Option<&Loads<T, N>>) -> T {
+        let sizes = loads.map_or([T::constant(0.0); N], Loads::sizes);
         (0..N).fold(T::constant(0.0), |sum, k| {
-            sum + local.bias[k].abs() + local.compliance[k][k] * self.contacts[k].levels[1]
+            let Contact { levels, coefficients, .. } = self.contacts[k];
+            let level = levels[1] + coefficients[1] * sizes[k];
+            sum + local.bias[k].abs() + local.compliance[k][k] * level
         })
     }
 
     /// By how much the present phases are inconsistent, as an acceleration.
-    fn violation(&self, local: &Local<T, N>, options: &[Options; N], values: &[T]) -> T {
+    fn violation(
+        &self,
+        local: &Local<T, N>,
+        Acting { forces, levels, .. }: &Acting<T, N>,
+        options: &[Options; N],
+        values: &[T],
+    ) -> T {
         let zero = T::constant(0.0);
-        let held = self.phases.map(Phase::is_held);
-        let forces = local.balance(&held, &self.kinetic_forces());
-        let accelerations = local.accelerations(&forces);
+        let accelerations = local.accelerations(forces);
         let mut worst = zero;
         for k in (0..N).filter(|k| options[*k].1 > 1) {
             let contact = &self.contacts[k];
-            let [low, high] = bounds(contact, self.phases[k]);
+            let [low, high] = bounds(levels[k], self.phases[k]);
             let is_at_upper = values[contact.coordinate] >= contact.ends[1];
             let violation = match self.phases[k] {
                 phase if phase.is_held() => {

@@ -45,7 +45,8 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         let hits = self.hits(&mut y, [&at_lower, &at_upper], next.map(|(next, _)| next));
         self.collide(model, &mut y, &hits);
         let t = self.solver.time();
-        self.solver.dynamics_mut().choose(model, (t, &y), &reached, &mut self.scratch[0]);
+        let chosen = self.solver.dynamics_mut().choose(model, (t, &y), &reached, &mut self.scratch[0]);
+        self.failure = chosen.err();
         self.solver.set_state(&y);
         self.solver.system_has_changed();
         self.note(&phases, |k| {
