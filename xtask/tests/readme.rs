@@ -92,6 +92,11 @@ fn names_a_file(command: &[String]) -> bool {
     command[3..].first().is_some_and(|word| [".toml", ".urdf"].iter().any(|end| word.ends_with(end)))
 }
 
+/// Rigid stops and friction that sticks are for compiled code.
+fn touches(file: &str) -> bool {
+    fs::read_to_string(root().join(file)).is_ok_and(|page| page.contains("[[contact]]"))
+}
+
 /// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; nothing of the long
 /// ones but that they exist.
 fn run(command: &[String], folder: &Path) -> Output {
@@ -103,7 +108,7 @@ fn run(command: &[String], folder: &Path) -> Output {
     let has = |option: &str| command.iter().any(|word| word == option);
     let mut add = |words: &[&str]| args.extend(words.iter().map(|word| (*word).to_owned()));
     match command[2].as_str() {
-        "simulate" if names_a_file(command) && !has("--linearize") => {
+        "simulate" if names_a_file(command) && !has("--linearize") && !touches(&command[3]) => {
             if !has("--engine") {
                 add(&["--engine", "assembled"]);
             }

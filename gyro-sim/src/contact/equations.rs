@@ -13,6 +13,11 @@ use core::ops::Range;
 pub trait Forced<M = ()>: Ode<M> {
     /// Where the rates stand in the state.
     fn rates(&self, model: &M) -> Range<usize>;
+    /// Where the work of all forces stands in the state, those of contacts and of what is driven included; `None` where
+    /// it is not counted. An impact adds what it makes drivers do.
+    fn work(&self, _model: &M) -> Option<usize> {
+        None
+    }
     /// Writes `f(t, y)` under these forces, one for each contact, besides all else that acts: N along a length, N m
     /// along an angle.
     fn forced(

@@ -220,7 +220,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         worst
     }
 
-    /// Adds what an impulse along a contact changes of all rates.
+    /// Adds what an impulse along a contact changes of all rates, and the work that drivers do meanwhile.
     pub(super) fn push<M>(
         &self,
         model: &M,
@@ -244,6 +244,12 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             for i in self.dynamics.rates(model) {
                 let change = pushed.as_ref()[i] - base.as_ref()[i];
                 y.as_mut()[i] = T::fused(change, part, y.as_ref()[i]);
+            }
+            if let Some(work) = self.dynamics.work(model).filter(|work| *work < y.as_ref().len()) {
+                // Less the power of the force itself: that is what the impact takes.
+                let own = T::constant(LARGE) * before.as_ref()[self.contacts[k].rate];
+                let change = pushed.as_ref()[work] - base.as_ref()[work] - own;
+                y.as_mut()[work] = T::fused(change, part, y.as_ref()[work]);
             }
         }
     }
