@@ -68,8 +68,8 @@ fn by_newton<T: Real, const N: usize>(
             compliance[i].iter().zip(&impulses).fold(rates[i], |sum, (w, impulse)| sum + *w * *impulse)
         });
         let mut worst = zero;
-        for (k, hit) in hits.iter().enumerate() {
-            let Some(hit) = hit else { continue };
+        for k in 0..N {
+            let Some(hit) = hits[k] else { continue };
             let pull = -hit.outward * impulses[k] * compliance[k][k];
             let short = hit.outward * (target(k) - after[k]);
             for violation in [pull, short] {
