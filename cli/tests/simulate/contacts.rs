@@ -262,7 +262,7 @@ fn the_stabilised_gimbal_sticks_slips_and_hits_its_stop() {
     for run in [&calm, &rough] {
         for bearing in ["pan_bearing", "tilt_bearing"] {
             let counts = ["sticks", "slips"].map(|what| count(run, bearing, what));
-            assert!(counts.iter().all(|count| *count >= 4), "{bearing}: {counts:?}");
+            assert!(counts.iter().all(|count| *count >= 2), "{bearing}: {counts:?}");
         }
         assert!(run["energy_drift"].as_f64().unwrap() < 1e-8, "{}", run["energy_drift"]);
     }

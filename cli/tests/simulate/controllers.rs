@@ -140,10 +140,11 @@ fn the_stabilised_gimbal_is_still_in_space() {
     let method =
         ["--engine", "jit", "--integrator", "dop853", "--tolerance", "1e-8", "--coordinates", "joint"];
     let rates = |extra: &[&str]| {
-        let run = json(&folder, &[&[&page[..], "--t-end", "1"], &method[..], extra].concat());
+        // A third of a second after a bearing has stuck.
+        let run = json(&folder, &[&[&page[..], "--t-end", "0.9"], &method[..], extra].concat());
         [4, 5].map(|k| run["outputs"]["gyro"][k].as_f64().unwrap().abs())
     };
-    let (held, loose) = (rates(&[]), rates(&["--set", "bandwidth=0.01"]));
+    let (held, loose) = (rates(&[]), rates(&["--set", "bandwidth=0"]));
     assert!(held.iter().all(|rate| *rate < 5e-3), "{held:?}");
     assert!(loose.iter().any(|rate| *rate > 0.05), "{loose:?}");
 }
