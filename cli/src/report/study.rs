@@ -105,7 +105,7 @@ impl Study {
         let knob = Knob::of(&lab.model);
         progress.begin(&format!("{}: stability", lab.name), 1);
         let (maps, troubles) = match lab.touches() {
-            true => (Vec::new(), vec!["of motions from event to event: steps end at events".to_owned()]),
+            true => (Vec::new(), Vec::new()),
             false => stability::maps(&lab, knob, effort.per_decade)?,
         };
         progress.begin(&format!("{}: smooth kinds", lab.name), 1);

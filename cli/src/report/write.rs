@@ -307,6 +307,12 @@ fn drift(study: &Study, page: &mut Page) {
 
 fn stability(study: &Study, page: &mut Page) {
     page.heading(2, "Stable steps");
+    if study.lab.touches() {
+        page.text(
+            "Not looked for: of motions from event to event a limit would be that of each phase between them.",
+        );
+        return;
+    }
     let knob = study.knob.label(&study.lab.model);
     page.text(format!(
         "Fixed steps that keep a run of 4000 steps bounded, over the {knob}. The limit in theory is where |R(hλ)| = 1 at the fastest eigenvalue λ \

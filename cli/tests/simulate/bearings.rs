@@ -1,7 +1,10 @@
 //! Friction in proportion to reactions, in model files: blocks on inclines and a pendulum in a bearing, against their own
 //! equations.
 
+use crate::contacts::chain;
 use crate::support::{Folder, json, refused, simulate};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;
@@ -112,7 +115,7 @@ fn blocks_on_inclines_rub_by_the_normal_force() {
             }
         }
     }
-    assert_eq!(sticking, 16, "of 24 runs so many end at rest");
+    assert_eq!(sticking, 14, "of 24 runs so many end at rest");
 }
 
 /// What outputs tell is what friction has made of them: at rest a block is not accelerated.
@@ -133,16 +136,28 @@ fn outputs_know_of_the_forces_of_contacts() {
             .position(|column| column.starts_with(name))
             .unwrap_or_else(|| panic!("{name}: {columns:?}"))
     };
-    let names = ["t", "slide rate", "felt ax", "felt ay", "guide force_f", "guide force_g", "guide force_h"];
+    let names = [
+        "t ",
+        "slide rate",
+        "felt.ax",
+        "felt.ay",
+        "guide.force_f",
+        "guide.force_g",
+        "guide.force_h",
+        "input guide",
+    ];
     let places = names.map(place);
     let slows = GRAVITY * 0.6 + 0.5 / 2.0 + 0.3 * GRAVITY * 0.8;
     let (mut moving, mut resting) = (0, 0);
     for row in reader.records() {
         let row = row.unwrap();
-        let [t, rate, ax, ay, f, g, h] = places.map(|place| row[place].parse::<f64>().unwrap());
+        let [t, rate, ax, ay, f, g, h, force] = places.map(|place| row[place].parse::<f64>().unwrap());
         let expected = if rate == 0.0 { 0.0 } else { -slows };
         assert!((0.8 * ax + 0.6 * ay - expected).abs() < 1e-9, "at {t}: {ax} {ay} for {expected}");
         assert!((f.hypot(g) - 2.0 * GRAVITY * 0.8).abs() < 1e-9 && h.abs() < 1e-9, "at {t}: {f} {g} {h}");
+        let weight = 2.0 * GRAVITY * 0.6;
+        let expected = if rate == 0.0 { weight } else { weight - 2.0 * slows };
+        assert!((force - expected).abs() < 1e-9, "at {t}: {force} for {expected}");
         *(if rate == 0.0 { &mut resting } else { &mut moving }) += 1;
     }
     assert!(moving > 50 && resting > 50, "{moving} {resting}");
@@ -321,4 +336,118 @@ fn reactions_that_are_not_unique_carry_no_friction() {
     let contact = "\n[[contact]]\nname = \"bearing\"\njoint = \"crank_pivot\"\nfriction_coefficient = 0.1\nradius = 0.01\n";
     fs::write(folder.0.join("four-bar.toml"), text + contact).unwrap();
     refused(&simulate(&folder, &[&["four-bar.toml"], &JOINT[..]].concat()), "is not unique");
+}
+
+/// A contact of a chain: coefficients, radius of the bearing, and whether its joint turns.
+struct Loaded {
+    coefficients: [f64; 2],
+    radius: f64,
+    turns: bool,
+}
+
+/// A chain in whose contacts friction grows with the reactions of the joints.
+fn loaded_chain(random: &mut ChaCha8Rng) -> (String, Vec<Loaded>) {
+    let text = chain(random);
+    let mut parts = text.split("[[contact]]\n");
+    let mut loaded = parts.next().unwrap().to_owned();
+    let (mut before, mut contacts) = (loaded.clone(), Vec::new());
+    for part in parts {
+        let mut between = |low: f64, high: f64| (random.random_range(low..high) * 1e3).round() / 1e3;
+        let kinetic = between(0.05, 0.4);
+        let more = [0.0, between(0.01, 0.1)][between(0.0, 1.0).round() as usize];
+        let turns = before.rsplit("kind = ").next().unwrap().starts_with("\"revolute\"");
+        let contact = Loaded { coefficients: [kinetic, kinetic + more], radius: between(0.005, 0.05), turns };
+        let _ = write!(
+            loaded,
+            "[[contact]]\nfriction_coefficient = {:?}\nstatic_friction_coefficient = {:?}\n",
+            contact.coefficients[0], contact.coefficients[1]
+        );
+        if turns {
+            let _ = writeln!(loaded, "radius = {:?}", contact.radius);
+        }
+        loaded += part;
+        before = part.to_owned();
+        contacts.push(contact);
+    }
+    (loaded, contacts)
+}
+
+/// A number of a contact in a model file.
+fn key(text: &str, contact: usize, key: &str) -> f64 {
+    let of = text.split("[[contact]]\n").nth(contact + 1).unwrap();
+    let line = of.lines().find(|line| line.starts_with(&format!("{key} = "))).unwrap();
+    line.rsplit(' ').next().unwrap().parse().unwrap()
+}
+
+#[test]
+fn random_chains_rub_by_the_forces_in_their_joints() {
+    let folder = Folder::new("loaded-chains");
+    let mut random = ChaCha8Rng::seed_from_u64(2407);
+    let (mut slipping, mut sticking, mut events) = (0, 0, 0);
+    for case in 0..6 {
+        let (text, contacts) = loaded_chain(&mut random);
+        let file = format!("chain-{case}.toml");
+        fs::write(folder.0.join(&file), &text).unwrap();
+        for (tolerance, limit) in [("1e-9", 1e-6), ("1e-12", 1e-9)] {
+            let method = ["--integrator", "dop853", "--tolerance", tolerance, "--json", "--out", "out"];
+            let output = simulate(&folder, &[&[&file[..]], &JOINT[..], &method].concat());
+            assert!(output.status.success(), "case {case}: {}", String::from_utf8_lossy(&output.stderr));
+            let run: Value = serde_json::from_slice(&output.stdout).unwrap();
+            let drift = run["energy_drift"].as_f64().unwrap();
+            assert!(drift < limit, "case {case}: {drift:e}\n{}\n{text}", run["events"]);
+            events += run["events"].as_array().unwrap().len();
+        }
+        let table = fs::read_to_string(folder.0.join("out/chain.csv")).unwrap();
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        let columns: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
+        let place = |name: &str| {
+            let found = columns.iter().position(|column| column.starts_with(&format!("{name} [")));
+            found.unwrap_or_else(|| panic!("{name}: {columns:?}"))
+        };
+        for row in reader.records() {
+            let row = row.unwrap();
+            let number = |name: &str| row[place(name)].parse::<f64>().unwrap();
+            for (k, contact) in contacts.iter().enumerate() {
+                let load = ["f", "g", "h"].map(|axis| number(&format!("contact_{k}.force_{axis}")));
+                let load = load.iter().map(|force| force * force).sum::<f64>().sqrt();
+                let arm = if contact.turns { contact.radius } else { 1.0 };
+                let level =
+                    |constant: &str, i: usize| key(&text, k, constant) + contact.coefficients[i] * arm * load;
+                let (kinetic, at_rest) = (level("friction", 0), level("static_friction", 1));
+                let [force, x, rate] =
+                    [format!("input contact_{k}"), format!("joint_{k}"), format!("joint_{k} rate")]
+                        .map(|name| number(&name));
+                let told = format!("case {case} at {}: {force} {x} {rate}, {kinetic} {at_rest}", &row[0]);
+                // Rates are read off the bodies: of what sticks there is rounding.
+                if rate.abs() > 1e-12 {
+                    slipping += 1;
+                    assert!((force + rate.signum() * kinetic).abs() < 1e-8 * (1.0 + kinetic), "{told}");
+                } else if ["lower", "upper"].iter().all(|end| (x - key(&text, k, end)).abs() > 1e-12) {
+                    sticking += 1;
+                    assert!(force.abs() <= at_rest * (1.0 + 1e-9), "{told}");
+                }
+            }
+        }
+    }
+    assert!(slipping > 3000 && sticking > 300 && events > 100, "{slipping} {sticking} {events}");
+}
+
+/// In a loop, too: the crank and the rocker of a four-bar in bearings.
+#[test]
+fn a_loop_rubs_by_the_forces_in_its_joints_until_it_stands() {
+    let folder = Folder::new("loaded-loop");
+    let text = fs::read_to_string(crate::support::model("four-bar.toml")).unwrap();
+    let contact = |joint: &str| {
+        format!(
+            "\n[[contact]]\nname = \"{joint}_bearing\"\njoint = \"{joint}\"\nfriction_coefficient = 0.2\nradius = 0.02\n"
+        )
+    };
+    for joints in [&["crank_pivot"][..], &["rocker_pivot"], &["crank_pivot", "rocker_pivot"]] {
+        let contacts: String = joints.iter().map(|joint| contact(joint)).collect();
+        let run = run(&folder, "four-bar", &(text.clone() + &contacts), &FINE);
+        assert!(run["energy_drift"].as_f64().unwrap() < 1e-9, "{joints:?}: {}", run["energy_drift"]);
+        let events = run["events"].as_array().unwrap();
+        let has_stood = events.iter().any(|event| event["what"] == "sticks");
+        assert_eq!(has_stood, joints.contains(&"crank_pivot"), "{joints:?}: {events:?}");
+    }
 }

@@ -193,7 +193,7 @@ fn random_sledges_move_as_parabolas_do() {
 }
 
 /// A chain of swinging and sliding bodies, with stops and friction in its joints.
-fn chain(random: &mut ChaCha8Rng) -> String {
+pub(crate) fn chain(random: &mut ChaCha8Rng) -> String {
     let mut text = head("chain", 2.0);
     let mut between = |low: f64, high: f64| (random.random_range(low..high) * 1e3).round() / 1e3;
     let n = between(1.0, 4.49).round() as usize;

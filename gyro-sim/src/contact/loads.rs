@@ -155,13 +155,14 @@ fn jam<T: Real, const N: usize>(gains: &[[T; N]; N]) -> Jam {
 /// Solves `A x = b` by elimination in the given order; `None` if a pivot is not positive.
 fn eliminated<T: Real, const N: usize>(mut matrix: [[T; N]; N], mut right: [T; N]) -> Option<[T; N]> {
     for pivot in 0..N {
-        if !(matrix[pivot][pivot] > T::constant(0.0)) {
+        let own = matrix[pivot];
+        if own[pivot] <= T::constant(0.0) || !own[pivot].is_finite() {
             return None;
         }
         for row in pivot + 1..N {
-            let factor = matrix[row][pivot] / matrix[pivot][pivot];
-            for column in pivot..N {
-                matrix[row][column] = matrix[row][column] - factor * matrix[pivot][column];
+            let factor = matrix[row][pivot] / own[pivot];
+            for (element, own) in matrix[row].iter_mut().zip(own).skip(pivot) {
+                *element = *element - factor * own;
             }
             right[row] = right[row] - factor * right[pivot];
         }

@@ -211,9 +211,12 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             let is_at_upper = at(values, contact.coordinate) >= contact.ends[1];
             let violation = match self.phases[k] {
                 phase if phase.is_held() => {
-                    let below = (low - forces[k]) * local.compliance[k][k];
-                    let above = (forces[k] - high) * local.compliance[k][k];
-                    if below > above { below } else { above }
+                    // Where the others determine a coordinate's acceleration, as in a loop's dead centre, its own
+                    // compliance is rounding, of either sign.
+                    let compliance = local.compliance[k][k].abs();
+                    let moves = accelerations[k].abs();
+                    let beyond = [(low - forces[k]) * compliance, (forces[k] - high) * compliance];
+                    beyond.into_iter().fold(moves, |most, x| if x > most { x } else { most })
                 }
                 Phase::Down => accelerations[k],
                 Phase::Free if is_at_upper => accelerations[k],
