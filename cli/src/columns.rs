@@ -97,7 +97,8 @@ pub(crate) fn inputs_at(model: &Model, start: &Start, sample: &Sample) -> Vec<f6
     };
     let mut values: Vec<f64> = model.inputs.iter().enumerate().map(value).collect();
     let controlled = start.controllers.iter().flat_map(|controller| &controller.inputs);
-    controlled.zip(&sample.controlled).for_each(|((index, _), value)| values[*index] = *value);
+    let set = controlled.map(|(index, _)| *index).chain(start.contacts.iter().map(|contact| contact.input));
+    set.zip(&sample.controlled).for_each(|(index, value)| values[index] = *value);
     values
 }
 

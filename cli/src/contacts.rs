@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::remarks;
 use crate::words::{count, number};
-use gyro_model::{Contact, Model, to_f64};
+use gyro_model::{Contact, Model, RedundantRow, RowOwner, to_f64};
 use gyro_runner::Touch;
 use std::fmt::Write as _;
 
@@ -17,6 +17,12 @@ pub(crate) fn contacts(model: &Model) -> Vec<Touch> {
             ends: [end(0, f64::NEG_INFINITY), end(1, f64::INFINITY)],
             restitution: to_f64(&model.exact(&contact.restitution)),
             levels: contact.levels.each_ref().map(|level| model.value(level)),
+            coefficients: contact.coefficients.each_ref().map(|coefficient| {
+                contact.radius.as_ref().map_or(1.0, |radius| model.value(radius)) * model.value(coefficient)
+            }),
+            reaction: contact
+                .reaction
+                .map(|output| model.outputs[..output].iter().map(|output| output.kind.columns().len()).sum()),
         }
     };
     model.contacts.iter().map(one).collect()
@@ -49,6 +55,28 @@ pub(crate) fn refuse(model: &Model, what: &str) -> Result<(), Failure> {
     }
 }
 
+/// Refuses friction that depends on reactions which are not unique.
+pub(crate) fn refuse_shared_reactions(model: &Model) -> Result<(), Failure> {
+    for contact in &model.contacts {
+        let Some(output) = contact.reaction.map(|output| &model.outputs[output]) else { continue };
+        let owner = RowOwner::Joint(contact.on.joint);
+        let is_shared =
+            |dropped: &&RedundantRow| dropped.row.owner == owner || dropped.shared_with.contains(&owner);
+        if remarks::is_not_unique(model, &output.kind)
+            && let Some(dropped) = model.redundant.iter().find(is_shared)
+        {
+            return Err(Failure::Usage(format!(
+                "the friction of contact `{}` depends on the reaction of {}, which is not unique: {}; choose kinds of joints \
+                 that leave free what others hold, or give friction a constant level",
+                contact.name,
+                remarks::owner(model, owner),
+                remarks::describe(model, dropped)
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// A line for each.
 pub(crate) fn text(model: &Model) -> String {
     let mut text = String::new();
@@ -62,6 +90,11 @@ pub(crate) fn text(model: &Model) -> String {
         if touch.levels[1] > 0.0 {
             let [kinetic, at_rest] = touch.levels.map(|level| number(level, 6));
             let _ = write!(text, ", friction {kinetic}, static {at_rest}");
+        }
+        if touch.coefficients[1] > 0.0 {
+            let [kinetic, at_rest] =
+                contact.1.coefficients.each_ref().map(|number| self::number(model.value(number), 6));
+            let _ = write!(text, ", coefficients of friction {kinetic}, static {at_rest}");
         }
         text.push('\n');
     }

@@ -48,6 +48,11 @@ impl Runs {
         }
     }
 
+    /// The same, with rigid stops or friction that sticks.
+    pub(crate) fn touching(self) -> Self {
+        Self { touches: true, ..self }
+    }
+
     /// The same, linearised and looked at.
     pub(crate) fn examined(self) -> Self {
         Self { is_examined: true, ..self }

@@ -51,6 +51,7 @@ impl Scene {
         let mut model = with_parameters(&page, &args.set)?;
         events::add(&mut model, &args.event)?;
         refuse_joint_coordinates(&model, args)?;
+        contacts::refuse_shared_reactions(&model)?;
         let (settings, approach) = (settings(&model, args), approach(&model, args));
         let inputs = inputs::inputs(&model, &args.input)?;
         let start_controllers = controllers::controllers(&model);

@@ -132,3 +132,75 @@ fn what_is_kept_links_only_what_is_kept() {
     let index = fs::read_to_string(folder.join("index.md")).unwrap();
     assert!(index.contains("`cargo xtask report`") && index.contains("`out/report`"), "how to make the rest");
 }
+
+/// A mass on a belt that moves on at a tenth of a metre each second, held back by a spring: it sticks and slips.
+const BELT: &str = r#"format = 1
+name = "belt"
+
+[simulation]
+t_end = 10
+step = 1e-3
+
+[[body]]
+name = "ground"
+fixed = true
+
+[[body]]
+name = "belt"
+driven = { translation = [{ polynomial = [0, 0.1] }, 0, 0] }
+
+[[body]]
+name = "mass"
+mass = 1
+inertia = [1, 1, 1]
+
+[[joint]]
+name = "slide"
+kind = "prismatic"
+axis = [1, 0, 0]
+zero = [0, 1, 0]
+first = { body = "belt" }
+second = { body = "mass" }
+
+[[force]]
+name = "spring"
+kind = "link"
+first = { body = "ground", point = [-2, 0, 0] }
+second = { body = "mass" }
+stiffness = 4
+free_length = 2
+
+[[contact]]
+name = "rubbing"
+joint = "slide"
+friction = 1
+"#;
+
+/// Rigid friction is as fine as a smooth motion; what is smooth is off by its width, whatever the tolerance.
+#[test]
+#[ignore = "compiles four optimised programs; `.ci/run` runs it after `cargo xtask report --quick`"]
+fn a_page_of_contacts_has_smooth_ones_beside_them() {
+    let folder = Folder::new("belt");
+    let page = folder.0.join("belt.toml");
+    fs::write(&page, BELT).unwrap();
+    let out = folder.0.join("out");
+    let output = report(&["--quick", &shown(&page), "--out", &shown(&out)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let markdown = folder.text("out/belt.md");
+    for words in ["## Rigid and smooth stops and friction", "nothing else follows rigid stops", "of motions from event to event"] {
+        assert!(markdown.contains(words), "{words} in {markdown}");
+    }
+    assert!(folder.text("out/images/belt-smooth.svg").contains("<polyline"));
+    let errors = |file: &str, column: usize, keep: &dyn Fn(&csv::StringRecord) -> bool| -> Vec<f64> {
+        let text = folder.text(file);
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let rows = reader.records().map(Result::unwrap).filter(|row| keep(row));
+        rows.filter_map(|row| row[column].parse().ok()).collect()
+    };
+    let least = |errors: Vec<f64>| errors.into_iter().fold(f64::INFINITY, f64::min);
+    let rigid = least(errors("out/belt.csv", 7, &|row| &row[3] == "joint"));
+    assert!(rigid < FINE, "{rigid:e}");
+    let by_width = |width: &str| least(errors("out/belt-smooth.csv", 3, &|row| &row[0] == width));
+    let [wide, narrow] = ["1e-2", "1e-4"].map(by_width);
+    assert!(wide > 1e-4 && narrow < 0.1 * wide && narrow > 1e3 * rigid, "{wide:e} {narrow:e} {rigid:e}");
+}

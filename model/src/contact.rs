@@ -17,6 +17,12 @@ pub struct Contact {
     pub restitution: Number,
     /// The kinetic and the static level of dry friction, N·m or N.
     pub levels: [Number; 2],
+    /// The kinetic and the static coefficient of friction in proportion to the force of the joint's reaction.
+    pub coefficients: [Number; 2],
+    /// The radius of the bearing at which that friction acts, m; along an angle only.
+    pub radius: Option<Number>,
+    /// Index into [`crate::Model::outputs`] of that reaction, where friction depends on it.
+    pub reaction: Option<usize>,
     /// Index into [`crate::Model::inputs`] of its force.
     pub input: usize,
 }
@@ -27,6 +33,7 @@ impl Contact {
 
     /// All its numbers.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = &Number> {
-        self.ends.iter().flatten().chain([&self.restitution]).chain(&self.levels)
+        let levels = self.levels.iter().chain(&self.coefficients).chain(&self.radius);
+        self.ends.iter().flatten().chain([&self.restitution]).chain(levels)
     }
 }

@@ -87,6 +87,15 @@ pub fn describe_in<M: Mechanism>(mechanism: &M, layout: Option<&JointLayout<'_>>
         Error::Tolerance { relative, smallest, .. } => format!(
             "a tolerance of {relative:e} cannot be met: at least {smallest:.1e} in this precision, and finite"
         ),
+        Error::Jammed { t, index, gain } if *gain < 1.0 => format!(
+            "at t = {t} s no motion is consistent with stops and friction, among them those on {}",
+            element(index).trim_start_matches("the position of ")
+        ),
+        Error::Jammed { t, index, gain } => format!(
+            "at t = {t} s friction on {} may jam: a unit of it adds up to {gain:.4e} to itself by way of the reactions \
+             that it grows with, and from 1 on there may be no motion, or several; lower its coefficient or radius",
+            element(index).trim_start_matches("the position of ")
+        ),
         Error::NoConvergence { t, violation, owner } => format!(
             "at t = {t} s the constraints of {} cannot be met: {violation:e} remains after Newton's iterations",
             name(mechanism, *owner)
@@ -180,6 +189,14 @@ mod tests {
                 Error::Singular { t: 1.0, pivot: 0.0, owner: None },
                 "at t = 1 s the dependent coordinates cannot be solved for: a pivot is 0e0; the mechanism is in a singular \
                  pose, or",
+            ),
+            (
+                Error::Jammed { t: 0.5, index: 2, gain: 1.25 },
+                "at t = 0.5 s friction on body `rotor` may jam: a unit of it adds up to 1.2500e0 to itself",
+            ),
+            (
+                Error::Jammed { t: 0.5, index: 2, gain: 0.0 },
+                "at t = 0.5 s no motion is consistent with stops and friction, among them those on body `rotor`",
             ),
             (
                 Error::Jump { t: 1.0, change: 0.5, limit: 1e-2, owner: Owner::Driver(0) },

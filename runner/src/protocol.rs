@@ -160,6 +160,8 @@ mod tests {
                         ends: [f64::NEG_INFINITY, AWKWARD[1]],
                         restitution: AWKWARD[0],
                         levels: [0.0, AWKWARD[5]],
+                        coefficients: [AWKWARD[1], AWKWARD[0]],
+                        reaction: correct_every.map(|_| 7),
                     }],
                 },
                 measure_for: correct_every.map(|every| 3.0 * every),

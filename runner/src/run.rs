@@ -384,11 +384,28 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
 
     /// Between two readings the mean rate predicts each angle to within half a turn.
     fn read_turns(&mut self, t: f64) -> Result<(), Error> {
-        self.motion.at(self.mechanism, t, &mut self.y)?;
+        self.look_at(t)?;
         let dt = t - self.read_at;
         self.turns.update(self.mechanism, Scalar::constant(t), Scalar::constant(dt), &self.y);
         self.read_at = t;
         Ok(())
+    }
+
+    /// Has the state and the inputs that the motion sets by itself as they are at a time within the last step.
+    fn look_at(&mut self, t: f64) -> Result<(), Error> {
+        self.motion.at(self.mechanism, t, &mut self.y)?;
+        self.set_by_itself(t)?;
+        Ok(())
+    }
+
+    /// The inputs that the motion sets by itself: outputs depend on them.
+    fn set_by_itself(&mut self, t: f64) -> Result<Vec<(usize, M::Scalar)>, Error> {
+        let mut found = Vec::new();
+        self.motion.set_by_itself(self.mechanism, t, &mut |index, value| found.push((index, value)))?;
+        for (index, value) in &found {
+            self.mechanism.set_input(*index, *value);
+        }
+        Ok(found)
     }
 
     /// The state may have been corrected since the turns were read: they are read again.
@@ -401,10 +418,13 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
         if self.motion.time() <= t {
             self.control()?;
         }
+        let forces = self.set_by_itself(t)?;
         let sample =
             self.observer.sample(self.mechanism, t, &self.y, &self.turns, self.motion.chart_switches());
         let work = sample.work - self.motion.lost();
-        Ok(Sample { work, controlled: self.controllers.held().map(|(_, value)| value).collect(), ..sample })
+        let held = self.controllers.held().map(|(_, value)| value);
+        let controlled = held.chain(forces.into_iter().map(|(_, force)| force.to_f64())).collect();
+        Ok(Sample { work, controlled, ..sample })
     }
 
     /// The continuous angle of each coordinate at the last reading; zero for what is not an angle.

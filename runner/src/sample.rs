@@ -12,7 +12,7 @@ pub struct Sample {
     pub coordinates: Vec<JointSample>,
     /// Every number of every output, in the order of the model file.
     pub outputs: Vec<f64>,
-    /// The inputs that controllers set, controller after controller.
+    /// The inputs that controllers set, controller after controller, and the forces of contacts.
     pub controlled: Vec<f64>,
     /// The bodies that were asked for.
     pub bodies: Vec<BodySample>,

@@ -1,14 +1,14 @@
 //! What a run costs without being looked at.
 
 use crate::motion::MotionBuilder;
-use crate::run::{begin, layout, scheduled, state};
+use crate::run::{begin, layout, run_by, scheduled, state};
 use crate::{Approach, Failure, Schedule, Settings, Start, describe_in};
 use gyro_sim::{Error, Partition, Real, Scalar, Statistics};
 use gyro_yardstick::{Measured, beside};
 use nanoserde::{DeBin, SerBin};
 use std::time::Duration;
 
-/// What a run costs: its steps and corrections alone, no samples.
+/// What a run costs: its steps and corrections alone, no samples; with controllers also what they see.
 #[derive(Clone, Copy, Debug, Default, PartialEq, SerBin, DeBin)]
 pub struct Timing {
     /// Its time.
@@ -28,10 +28,10 @@ pub fn time_by<M: Partition<Scalar: Real> + Clone + 'static>(
     start: &Start,
     budget: Duration,
 ) -> Result<Timing, Failure> {
-    if !start.controllers.is_empty() {
-        return Err(Failure::Refused("runs with controllers are not timed without their samples".to_owned()));
-    }
     let settings = Settings { sample_every: settings.t_end, ..scheduled(settings, approach) };
+    if !start.controllers.is_empty() {
+        return in_closed_loops(mechanism, builder, (&settings, approach), start, budget);
+    }
     let y = state(mechanism, start)?;
     let segments: Vec<_> = Schedule::new(&settings).collect();
     let mut statistics = Statistics::default();
@@ -60,6 +60,23 @@ pub fn time_by<M: Partition<Scalar: Real> + Clone + 'static>(
             }
         }
         statistics = motion.statistics();
+        Ok(())
+    };
+    let measured = beside(budget, once)?;
+    Ok(Timing { measured, statistics })
+}
+
+/// The same with controllers: all of the run but for the samples between its ends.
+fn in_closed_loops<M: Partition<Scalar: Real> + Clone + 'static>(
+    mechanism: &M,
+    builder: &dyn MotionBuilder<M>,
+    plan: (&Settings, &Approach),
+    start: &Start,
+    budget: Duration,
+) -> Result<Timing, Failure> {
+    let mut statistics = Statistics::default();
+    let once = || -> Result<(), Failure> {
+        statistics = run_by(&mut mechanism.clone(), builder, plan, start, |_| Ok(()))?.statistics;
         Ok(())
     };
     let measured = beside(budget, once)?;

@@ -15,6 +15,10 @@ pub struct Touch {
     pub restitution: f64,
     /// The kinetic and the static level of dry friction, N·m or N.
     pub levels: [f64; 2],
+    /// What they grow by with the force of a reaction: 1 along a length, m along an angle.
+    pub coefficients: [f64; 2],
+    /// Where that reaction begins among the numbers of the outputs.
+    pub reaction: Option<usize>,
 }
 
 impl Touch {

@@ -52,4 +52,10 @@ pub(crate) struct Contact {
     friction: Option<Number>,
     /// The level of friction on what is at rest; that of `friction` unless given.
     static_friction: Option<Number>,
+    /// The coefficient of friction on what moves, in proportion to the force of the joint's reaction.
+    friction_coefficient: Option<Number>,
+    /// The coefficient of friction on what is at rest; that of `friction_coefficient` unless given.
+    static_friction_coefficient: Option<Number>,
+    /// The radius of the bearing, m, at which that friction acts about an axis.
+    radius: Option<Number>,
 }

@@ -41,4 +41,5 @@ mod solved;
 mod sweep;
 mod terms;
 mod turns;
+mod unused;
 mod verdict;

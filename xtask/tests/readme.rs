@@ -99,6 +99,11 @@ fn compiles_to_wasm() -> bool {
     ["clang", "wasm-ld"].iter().all(|tool| Command::new(tool).arg("--version").output().is_ok())
 }
 
+/// Rigid stops and friction that sticks are for compiled code.
+fn touches(file: &str) -> bool {
+    fs::read_to_string(root().join(file)).is_ok_and(|page| page.contains("[[contact]]"))
+}
+
 /// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; of the long ones
 /// nothing but that their options are known. What `new` makes is there for the commands after it.
 fn run(command: &[String], folder: &Path) -> Output {
@@ -129,7 +134,7 @@ fn run(command: &[String], folder: &Path) -> Output {
             }
             add(&["--t-end", "0.01"]);
         }
-        "simulate" if names_a_file(&command) && !has("--linearize") => {
+        "simulate" if names_a_file(&command) && !has("--linearize") && !touches(&command[3]) => {
             if !has("--engine") {
                 add(&["--engine", "assembled"]);
             }

@@ -111,8 +111,11 @@ fn in_process(lab: &Lab, request: &Request) -> Result<(f64, Result<Run, String>)
     for (index, value) in request.parameters.iter().enumerate() {
         mechanism.set_parameter(index, *value);
     }
-    let runs =
-        gyro_jit::Runs { joint_space: lab.has_joint_coordinates(), is_examined: false, is_for_all: true };
+    let runs = gyro_jit::Runs {
+        joint_space: lab.has_joint_coordinates(),
+        is_examined: false,
+        is_for_all: !lab.touches(),
+    };
     let mut replies = Vec::new();
     let outcome = gyro_jit::answer(&mut mechanism, runs, request, &mut replies);
     Ok((before, outcome.map_err(|failure| failure.to_string()).and_then(|summary| run(&replies, summary))))

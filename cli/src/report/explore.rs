@@ -50,7 +50,8 @@ pub(crate) fn curves(lab: &Lab) -> Vec<Curve> {
     let mut curves = Vec::new();
     for precision in [Precision::F64, Precision::F32] {
         for treatment in treatments(lab) {
-            for &integrator in Integrator::ALL {
+            let implicit = |one: &Integrator| *one == Integrator::Rodas4;
+            for &integrator in Integrator::ALL.iter().filter(|one| !(lab.touches() && implicit(one))) {
                 curves.push(Curve { engine: Engine::Generated, precision, integrator, treatment });
             }
         }
@@ -72,6 +73,9 @@ pub(crate) fn treatments(lab: &Lab) -> Vec<Treatment> {
     if lab.has_joint_coordinates() {
         treatments.push(Treatment::Joint);
     }
+    if lab.touches() {
+        return treatments;
+    }
     treatments.push(Treatment::Maximal(Correction::Partition));
     if lab.has_joint_coordinates() {
         treatments.push(Treatment::Maximal(Correction::ClosedForm));
@@ -85,6 +89,9 @@ pub(crate) fn treatments(lab: &Lab) -> Vec<Treatment> {
 /// The forms of the runtime-assembled model that a model can have.
 pub(crate) fn assembled_forms(lab: &Lab) -> Vec<Engine> {
     let mut assembled_forms = Vec::new();
+    if lab.touches() {
+        return assembled_forms;
+    }
     if Recursive::<f64>::new(&lab.model).is_ok() {
         assembled_forms.push(Engine::Recursive);
     }

@@ -45,7 +45,7 @@ impl Work {
         }
     }
 
-    fn axis(self) -> Axis {
+    pub(super) fn axis(self) -> Axis {
         match self {
             Self::Time => Axis { label: "CPU time [ms]".to_owned(), limits: TIMES },
             Self::Evaluations => Axis {

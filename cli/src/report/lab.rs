@@ -5,11 +5,14 @@ use super::truth::{INTERVALS, Truth};
 use crate::args::{Engine, Precision};
 use crate::failure::Failure;
 use crate::nested::{self, Session};
-use crate::{files, scene};
+use crate::runs::Runs;
+use crate::{contacts, files, scene};
 use gyro_codegen::Functions;
 use gyro_model::Model;
 use gyro_runner::protocol::Request;
-use gyro_runner::{Approach, Correction, Event, Integrator, Sample, Settings, Start, Summary, Timing};
+use gyro_runner::{
+    Approach, Coordinates, Correction, Event, Integrator, Sample, Settings, Start, Summary, Timing,
+};
 use std::path::{Path, PathBuf};
 
 /// A scene, how long it is followed, and what computes it.
@@ -53,7 +56,15 @@ impl Lab {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let module = gyro_codegen::generate_functions(&files::shown(path), &model, &Functions::of_solvers())
             .map_err(|e| Failure::Usage(e.to_string()))?;
-        let program = |precision| nested::program(&model, &module, precision, None);
+        if module.implements("JointSpace") {
+            contacts::refuse_shared_reactions(&model)?;
+        } else {
+            contacts::refuse(&model, "a report of a mechanism without joint coordinates")?;
+        }
+        // From event to event there are runs of one kind alone.
+        let touching =
+            (!model.contacts.is_empty()).then(|| Runs::with(Coordinates::Joint, Correction::None).touching());
+        let program = |precision| nested::program(&model, &module, precision, touching);
         let programs = [program(Precision::F64)?, program(Precision::F32)?];
         let lab = Self::with_programs(model, path, name, programs, assembled)?;
         Ok(Self { has_joint_coordinates: module.implements("JointSpace"), ..lab })
@@ -122,6 +133,9 @@ impl Lab {
         if let Some(reference) = gyro_reference::scene(&self.name).filter(|_| self.is_shipped()) {
             return Ok(Truth::of_reference(&self.model, &reference, self.t_end));
         }
+        if self.touches() {
+            return self.rigid_truth();
+        }
         let engine = if self.has_joint_coordinates() { Engine::Recursive } else { Engine::Dense };
         let correction = Correction::Partition;
         let curve = Curve {
@@ -141,6 +155,28 @@ impl Lab {
             engine.name()
         );
         Ok(Truth::of_samples(&self.model, (source, FLOOR), &run.samples))
+    }
+
+    /// What rigid stops and friction that sticks have in the place of a reference: generated code alone follows them.
+    fn rigid_truth(&mut self) -> Result<Truth, Failure> {
+        let curve = Curve {
+            engine: Engine::Generated,
+            precision: Precision::F64,
+            integrator: Integrator::Dop853,
+            treatment: Treatment::Joint,
+        };
+        let plan = self.plan(&curve, Setting::Tolerance(TIGHT), 10_000_000, None);
+        let run = self.run((Engine::Generated, Precision::F64), &plan).map_err(Failure::Run)?;
+        let source = format!(
+            "the generated code itself by dop853 at a tolerance of {TIGHT:e}, from event to event, because nothing else \
+             follows rigid stops and friction that sticks: errors below {FLOOR:e} are not known and are shown as that"
+        );
+        Ok(Truth::of_samples(&self.model, (source, FLOOR), &run.samples))
+    }
+
+    /// Whether it has rigid stops or friction that sticks: runs are in joint coordinates, by explicit methods.
+    pub(crate) fn touches(&self) -> bool {
+        !self.start.contacts.is_empty()
     }
 
     /// A model file of this name elsewhere is another scene.

@@ -22,6 +22,7 @@ mod lab;
 mod limits;
 mod order;
 mod page;
+mod smooth;
 mod stability;
 mod stiff;
 mod study;

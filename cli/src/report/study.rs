@@ -9,6 +9,7 @@ use super::goals::{self, Goal, Limit};
 use super::lab::Lab;
 use super::limits::Knob;
 use super::order::{self, Order};
+use super::smooth::{self, Smooth};
 use super::stability::{self, Map};
 use super::stiff;
 use super::truth::Truth;
@@ -59,6 +60,8 @@ pub(crate) struct Study {
     /// What could not be determined about stability, as messages.
     pub(crate) troubles: Vec<String>,
     pub(crate) goals: Vec<Goal>,
+    /// Of models with contacts: runs with smooth kinds in their place.
+    pub(crate) smooth: Option<Smooth>,
     /// rustc beside the engine that needs no compiler.
     #[cfg(feature = "jit")]
     pub(crate) engines: Result<Engines, String>,
@@ -101,7 +104,12 @@ impl Study {
         let (long, drifts) = long_runs(&mut lab, effort, truth_took, progress)?;
         let knob = Knob::of(&lab.model);
         progress.begin(&format!("{}: stability", lab.name), 1);
-        let (maps, troubles) = stability::maps(&lab, knob, effort.per_decade)?;
+        let (maps, troubles) = match lab.touches() {
+            true => (Vec::new(), Vec::new()),
+            false => stability::maps(&lab, knob, effort.per_decade)?,
+        };
+        progress.begin(&format!("{}: smooth kinds", lab.name), 1);
+        let smooth = smooth::smooth(&mut lab, &truth, effort.runs[usize::from(!is_paper)].measure_for)?;
         let mut goals = Vec::new();
         if is_paper {
             goals.extend(goals::of_the_paper(&points, lab.t_end));
@@ -132,6 +140,7 @@ impl Study {
             maps,
             troubles,
             goals,
+            smooth,
             #[cfg(feature = "jit")]
             engines,
             took,

@@ -9,6 +9,7 @@ use super::figures::{self, Work};
 use super::goals;
 use super::order::WINDOW;
 use super::page::Page;
+use super::smooth;
 use super::study::Study;
 use crate::args::{Engine, Precision};
 use crate::failure::Failure;
@@ -37,6 +38,9 @@ pub(crate) fn study(study: &Study, machine: &str, folder: &Path) -> Result<(), F
     ] {
         own(&folder.join(file), &text)?;
     }
+    if let Some(smooth) = &study.smooth {
+        own(&folder.join(format!("{name}-smooth.csv")), &smooth::data(smooth))?;
+    }
     Ok(())
 }
 
@@ -55,7 +59,8 @@ fn moving(study: &Study, folder: &Path) -> Result<Option<String>, Failure> {
 
 /// What the report of a scene, and the index, are written to; none may be a file that somebody else has written.
 pub(crate) fn check(name: &str, folder: &Path) -> Result<(), Failure> {
-    let own = [".md", ".html", ".csv", "-drift.csv", "-stability.csv"].map(|end| format!("{name}{end}"));
+    let own = [".md", ".html", ".csv", "-drift.csv", "-stability.csv", "-smooth.csv"]
+        .map(|end| format!("{name}{end}"));
     let index = ["index.md", "index.html", "index.csv", "goals.csv"].map(str::to_owned);
     own.iter().chain(&index).try_for_each(|file| {
         let path = folder.join(file);
@@ -99,6 +104,7 @@ fn page(study: &Study, machine: &str, moving: Option<&str>) -> Page {
     convergence(study, &mut page);
     #[cfg(feature = "jit")]
     engines::write(&study.engines, &mut page);
+    smooth::write(study, &mut page);
     drift(study, &mut page);
     stability(study, &mut page);
     failures(study, &mut page);
@@ -301,6 +307,12 @@ fn drift(study: &Study, page: &mut Page) {
 
 fn stability(study: &Study, page: &mut Page) {
     page.heading(2, "Stable steps");
+    if study.lab.touches() {
+        page.text(
+            "Not looked for: of motions from event to event a limit would be that of each phase between them.",
+        );
+        return;
+    }
     let knob = study.knob.label(&study.lab.model);
     page.text(format!(
         "Fixed steps that keep a run of 4000 steps bounded, over the {knob}. The limit in theory is where |R(hλ)| = 1 at the fastest eigenvalue λ \

@@ -1,6 +1,7 @@
 //! `gyro simulate` from the outside: what it prints, writes and returns.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+mod bearings;
 mod cells;
 mod closed_loops;
 mod contacts;

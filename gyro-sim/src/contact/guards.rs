@@ -1,6 +1,8 @@
 //! Functions that are positive while phases hold.
 
 use super::equations::{Contacts, Forced, bounds};
+use super::loads::Acting;
+use super::small::at;
 use super::{Contact, Phase};
 use crate::events::root;
 use crate::{Error, Real};
@@ -31,13 +33,13 @@ where
     let infinite = T::constant(f64::INFINITY);
     let largest = T::constant(f64::from(f32::MAX));
     let some = |gap: T| if gap < infinite { gap } else { largest };
-    let forces = equations.forces(model, (t, y), scratch);
+    let Acting { forces, levels, .. } = equations.forces(model, (t, y), scratch);
     let mut guards = [[largest; N]; 3];
     for (k, contact) in equations.contacts.iter().enumerate() {
-        let (x, rate) = (y.as_ref()[contact.coordinate], y.as_ref()[contact.rate]);
+        let (x, rate) = (at(y.as_ref(), contact.coordinate), at(y.as_ref(), contact.rate));
         let phase = equations.phases[k];
         let (value, [low, high]) =
-            if phase.is_held() { (forces[k], bounds(contact, phase)) } else { (x, contact.ends) };
+            if phase.is_held() { (forces[k], bounds(levels[k], phase)) } else { (x, contact.ends) };
         (guards[0][k], guards[1][k]) = (some(value - low), some(high - value));
         match phase {
             Phase::Up => guards[2][k] = rate,

@@ -2,6 +2,7 @@
 
 use super::equations::{Contacts, Forced, Kept};
 use super::guards::{Guards, guards, noise, passed};
+use super::settle::{Change, Ledger, Next, Record};
 use super::{Contact, Phase};
 use crate::contract::Storage;
 use crate::events::{Found, first_falling};
@@ -9,46 +10,18 @@ use crate::integrate::Method;
 use crate::solver::Mark;
 use crate::{Control, Correction, Error, Real, Solver, Statistics, Uncorrected};
 
-/// What contacts have done so far.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Record<T> {
-    /// Stops that were hit.
-    pub impacts: u64,
-    /// Coordinates that came to rest on a stop because rebounds had become too slow: see the
-    /// [module](super#what-is-solved-when-phases-change).
-    pub settled: u64,
-    /// Coordinates that friction has caught.
-    pub caught: u64,
-    /// Coordinates that were let go by stops, or by friction.
-    pub released: u64,
-    /// What impacts have taken of the kinetic energy, J.
-    pub lost: T,
-}
-
 /// A motion with contacts, by any method that is explicit.
 #[derive(Clone, Debug)]
 pub struct Hybrid<D, S, T, A, C, const N: usize> {
-    pub(super) solver: Solver<Contacts<D, T, N>, S, T, A, Kept<C>>,
+    solver: Solver<Contacts<D, T, N>, S, T, A, Kept<C>>,
     mark: Mark<S, T>,
-    pub(super) scratch: [S; 2],
-    /// The fastest impact on each contact.
-    pub(super) fastest: [T; N],
-    pub(super) record: Record<T>,
+    scratch: [S; 2],
+    ledger: Ledger<T, N>,
     is_begun: bool,
     /// What the last step has ended at, and its length before it was cut short.
     pending: Option<Pending<T>>,
-    pub(super) changes: [Change<T>; N],
-    /// How many events have come without a step between them.
-    pub(super) stalled: u32,
-}
-
-/// What a contact has done at an event.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Change<T> {
-    /// The rates before and after an impact on a stop.
-    pub hit: Option<[T; 2]>,
-    /// The phases before and after.
-    pub phases: [Phase; 2],
+    /// Why there is no way on from here.
+    failure: Option<Error>,
 }
 
 /// What is left to be decided at the end of a step.
@@ -64,14 +37,6 @@ enum Pending<T> {
 const MOST_STALLED: u32 = 64;
 /// The end of a step is brought to an event by so many further steps at most.
 const POLISHES: u32 = 3;
-
-/// An event: when, as a fraction of the step, and which guard, by kind and contact.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Next<T> {
-    pub(super) theta: T,
-    pub(super) kind: usize,
-    pub(super) contact: usize,
-}
 
 impl<D, S: Storage<T>, T: Real, A, const N: usize> Hybrid<D, S, T, A, Uncorrected, N> {
     /// A motion that starts at `y` at time `t`, without corrections.
@@ -90,18 +55,20 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         t: T,
         y: &S,
     ) -> Self {
-        let zero = T::constant(0.0);
-        let equations = Contacts { dynamics, contacts, phases: [Phase::Free; N], largest: zero };
         Self {
-            solver: Solver::with_correction(equations, method, Kept(correction), t, y),
+            solver: Solver::with_correction(
+                Contacts::new(dynamics, contacts),
+                method,
+                Kept(correction),
+                t,
+                y,
+            ),
             mark: Mark::new(t, y),
             scratch: [y.clone(), y.clone()],
-            fastest: [zero; N],
-            record: Record { impacts: 0, settled: 0, caught: 0, released: 0, lost: zero },
+            ledger: Ledger::new(),
             is_begun: false,
             pending: None,
-            changes: [Change { hit: None, phases: [Phase::Free; 2] }; N],
-            stalled: 0,
+            failure: None,
         }
     }
 
@@ -129,7 +96,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
 
     /// What contacts have done so far.
     pub fn record(&self) -> &Record<T> {
-        &self.record
+        &self.ledger.record
     }
 
     /// Statistics of the steps so far; those that an event cut short count as rejected.
@@ -139,12 +106,17 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
 
     /// What each contact has done at the last event, or when it was last decided which contacts hold.
     pub fn changes(&self) -> &[Change<T>; N] {
-        &self.changes
+        &self.ledger.changes
     }
 
     /// The correction.
     pub fn correction(&self) -> &C {
         &self.solver.correction().0
+    }
+
+    /// The equations without contacts.
+    pub fn dynamics(&self) -> &D {
+        &self.solver.dynamics().dynamics
     }
 
     /// The equations without contacts, to be changed where they hold data of their own: see
@@ -171,13 +143,29 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         D: Forced<M, Scalar = T, State = S>,
     {
         let at = (self.solver.time(), self.solver.state());
-        self.solver.dynamics().forces(model, at, &mut self.scratch[0])
+        self.solver.dynamics().forces(model, at, &mut self.scratch[0]).forces
+    }
+
+    /// The same at a time within the last step, as [`Hybrid::interpolate`] has the state.
+    ///
+    /// # Errors
+    /// As [`Solver::interpolate`].
+    pub fn forces_at<M>(&mut self, model: &M, t: T) -> Result<[T; N], Error>
+    where
+        D: Forced<M, Scalar = T, State = S>,
+        A: Method<Contacts<D, T, N>, M>,
+        C: Correction<D, M>,
+    {
+        let mut y = self.solver.state().clone();
+        self.interpolate(model, t, &mut y)?;
+        Ok(self.solver.dynamics().forces(model, (t, &y), &mut self.scratch[0]).forces)
     }
 
     /// Goes on until `t_end`, through all events on the way.
     ///
     /// # Errors
-    /// [`Error`] of the solver; [`Error::StepTooShort`] if events follow each other without time between them.
+    /// [`Error`] of the solver; [`Error::StepTooShort`] if events follow each other without time between them;
+    /// [`Error::Jammed`] if the forces of contacts are not determined.
     pub fn advance_to<M>(&mut self, model: &M, t_end: T) -> Result<(), Error>
     where
         D: Forced<M, Scalar = T, State = S>,
@@ -216,17 +204,16 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         A: Method<Contacts<D, T, N>, M>,
         C: Correction<D, M>,
     {
-        self.resolve(model);
-        self.solver.mark(&mut self.mark);
-        self.solver.step_towards(model, t_end)?;
+        self.begin(model)?;
+        self.solver.step_towards(model, t_end).map_err(|error| self.reason(error))?;
         self.pin();
         let h = self.solver.last_step();
         let Some(next) = self.find(model)? else {
-            self.stalled = 0;
+            self.ledger.stalled = 0;
             return Ok(false);
         };
-        self.stalled = if next.theta > T::constant(0.0) { 0 } else { self.stalled + 1 };
-        if self.stalled > MOST_STALLED {
+        self.ledger.stalled = if next.theta > T::constant(0.0) { 0 } else { self.ledger.stalled + 1 };
+        if self.ledger.stalled > MOST_STALLED {
             return Err(Error::StepTooShort { t: self.mark.time().to_f64(), step: 0.0, index: 0 });
         }
         self.end_at(model, h, &next)?;
@@ -276,12 +263,15 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         A: Method<Contacts<D, T, N>, M>,
         C: Correction<D, M>,
     {
-        self.resolve(model);
-        self.solver.mark(&mut self.mark);
-        self.solver.step(model, h)?;
+        self.begin(model)?;
+        self.ledger.begin(&self.solver.dynamics().contacts, self.solver.state().as_ref());
+        self.solver.step(model, h).map_err(|error| self.reason(error))?;
         self.pin();
         let guards = self.guards(model);
         let is_passed = guards.as_ref().iter().any(|guard| *guard < T::constant(0.0));
+        if !is_passed {
+            self.ledger.pass();
+        }
         self.pending = is_passed.then_some(Pending::Step);
         Ok(())
     }
@@ -323,6 +313,31 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         Ok(())
     }
 
+    /// Begins a step where there is a way on.
+    fn begin<M>(&mut self, model: &M) -> Result<(), Error>
+    where
+        D: Forced<M, Scalar = T, State = S>,
+    {
+        self.resolve(model);
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        self.solver.dynamics().jam.set(None);
+        self.solver.mark(&mut self.mark);
+        Ok(())
+    }
+
+    /// Where friction may jam no step leads on, for this one reason.
+    fn reason(&self, error: Error) -> Error {
+        let equations = self.solver.dynamics();
+        match (error, equations.jam.get()) {
+            (Error::NotFinite { .. } | Error::StepTooShort { .. }, Some(jam)) => {
+                equations.jammed(self.mark.time(), &jam)
+            }
+            _ => error,
+        }
+    }
+
     /// Closing loops moves all coordinates by rounding, but not those that are held.
     fn pin(&mut self) {
         let (contacts, phases) = (self.solver.dynamics().contacts, self.solver.dynamics().phases);
@@ -334,7 +349,19 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         }
     }
 
-    pub(super) fn guards<M>(&mut self, model: &M) -> Guards<T, N>
+    /// Decides what happens at the end of the last step.
+    fn settle<M>(&mut self, model: &M, next: Option<(&Next<T>, T)>)
+    where
+        D: Forced<M, Scalar = T, State = S>,
+    {
+        let (t, mut y) = (self.solver.time(), self.solver.state().clone());
+        let equations = self.solver.dynamics_mut();
+        self.failure = self.ledger.settle(equations, (model, t), &mut y, next, &mut self.scratch).err();
+        self.solver.set_state(&y);
+        self.solver.system_has_changed();
+    }
+
+    fn guards<M>(&mut self, model: &M) -> Guards<T, N>
     where
         D: Forced<M, Scalar = T, State = S>,
     {
@@ -416,7 +443,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         C: Correction<D, M>,
     {
         self.solver.rewind(&self.mark);
-        self.solver.step(model, h)?;
+        self.solver.step(model, h).map_err(|error| self.reason(error))?;
         self.pin();
         Ok(self.guards(model).0[next.kind][next.contact])
     }

@@ -28,17 +28,94 @@ impl<M: JointSpace + Clone, const N: usize> Forced<M> for JointInputs<N> {
         n..n + layout.n_rates()
     }
 
-    fn forced(&self, model: &M, t: M::Scalar, y: &M::Joints, forces: &[M::Scalar], dy: &mut M::Joints) {
-        let mut model = model.clone();
-        for (input, force) in self.inputs.iter().zip(forces) {
-            model.set_input(*input, *force);
-        }
-        model.joint_derivative(t, y, dy);
+    /// Behind the rates, where the model counts it.
+    fn work(&self, model: &M) -> Option<usize> {
+        Some(Forced::<M>::rates(self, model).end)
     }
+
+    fn forced(&self, model: &M, t: M::Scalar, y: &M::Joints, forces: &[M::Scalar], dy: &mut M::Joints) {
+        pushed(model, &self.inputs, forces).joint_derivative(t, y, dy);
+    }
+}
+
+/// The same, and friction may grow with reactions: with the force of an output of kind `reaction`, of the contact's joint
+/// or of any other.
+#[derive(Clone, Copy, Debug)]
+pub struct LoadedJointInputs<const N: usize> {
+    /// The index of each contact's input among the model's.
+    pub inputs: [usize; N],
+    /// Where the reaction of each contact begins among the numbers of the outputs, where it has one.
+    pub reactions: [Option<usize>; N],
+}
+
+impl<M: JointSpace, const N: usize> Ode<M> for LoadedJointInputs<N> {
+    type Scalar = M::Scalar;
+    type State = M::Joints;
+
+    fn derivative(&self, model: &M, t: M::Scalar, y: &M::Joints, dy: &mut M::Joints) {
+        Joint.derivative(model, t, y, dy);
+    }
+}
+
+impl<M: JointSpace + Clone, const N: usize> Forced<M> for LoadedJointInputs<N> {
+    const HAS_REACTIONS: bool = true;
+
+    fn rates(&self, model: &M) -> Range<usize> {
+        JointInputs { inputs: self.inputs }.rates(model)
+    }
+
+    fn work(&self, model: &M) -> Option<usize> {
+        JointInputs { inputs: self.inputs }.work(model)
+    }
+
+    fn forced(&self, model: &M, t: M::Scalar, y: &M::Joints, forces: &[M::Scalar], dy: &mut M::Joints) {
+        JointInputs { inputs: self.inputs }.forced(model, t, y, forces, dy);
+    }
+
+    fn reactions(
+        &self,
+        model: &M,
+        t: M::Scalar,
+        y: &M::Joints,
+        forces: &[M::Scalar],
+        out: &mut [[M::Scalar; 3]],
+    ) {
+        let model = pushed(model, &self.inputs, forces);
+        let (mut state, mut outputs) = (model.start(), model.buffers().outputs);
+        model.to_maximal(t, y, &mut state);
+        model.outputs(t, &state, &mut outputs);
+        for (out, place) in out.iter_mut().zip(self.reactions) {
+            if let Some(force) = place.and_then(|place| outputs.as_ref().get(place..place + 3)) {
+                out.copy_from_slice(force);
+            }
+        }
+    }
+}
+
+/// The mechanism under these forces.
+fn pushed<M: JointSpace + Clone>(model: &M, inputs: &[usize], forces: &[M::Scalar]) -> M {
+    let mut model = model.clone();
+    for (input, force) in inputs.iter().zip(forces) {
+        model.set_input(*input, *force);
+    }
+    model
 }
 
 /// Loops are closed as without contacts.
 impl<M: JointSpace<Scalar: Real>, const N: usize> Correction<JointInputs<N>, M> for CloseLoops<M> {
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, x: &mut M::Joints) -> Result<(), Error> {
+        Correction::<Joint, M>::correct(self, mechanism, t, x)
+    }
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> M::Scalar {
+        Correction::<Joint, M>::violation(self, mechanism, t, x)
+    }
+    fn clearance(&self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> Option<Clearance<M::Scalar>> {
+        Correction::<Joint, M>::clearance(self, mechanism, t, x)
+    }
+}
+
+/// Likewise.
+impl<M: JointSpace<Scalar: Real>, const N: usize> Correction<LoadedJointInputs<N>, M> for CloseLoops<M> {
     fn correct(&mut self, mechanism: &M, t: M::Scalar, x: &mut M::Joints) -> Result<(), Error> {
         Correction::<Joint, M>::correct(self, mechanism, t, x)
     }

@@ -61,22 +61,38 @@
 //!   contact, the coordinate comes to rest instead ([`Record::settled`] counts this). A mass that bounces with
 //!   restitution e is then `2 v⁺ / (a (1 − e))` from its last impact, at most 1e-12 of that time for the fastest one.
 //!
+//! # Friction in proportion to a reaction
+//! The level of friction may grow with a reaction R, as that in a bearing: by μ |R|, or μ r |R| about an axis
+//! ([`Contact::with_loaded_friction`]). R depends on all accelerations and so on friction itself: it is an affine
+//! function of the forces of contacts, whose coefficients the system says ([`Forced::reactions`]). Reactions, friction
+//! and the forces of what is held are solved together wherever the equations are evaluated, nothing lags behind, by
+//! Newton's method for `F_k = ∓(c_k + μ_k |R_k(F)|)`. Of a change of friction `L = (μ_k |∂R_k/∂F_j|)` bounds what comes
+//! back. Where the spectral radius of L is less than one there is exactly one solution, and each iteration comes nearer
+//! to it. Elsewhere friction may jam (Painlevé): there may be no solution, or several. The motion then ends in
+//! [`Error::Jammed`](crate::Error::Jammed), and so it does where no combination of phases is consistent.
+//!
 //! # Order under steps of fixed length
-//! [`Hybrid::step`] decides at the step's end: coordinates beyond a stop are set back to it and hit it; rates that have
-//! changed their sign under friction are set to zero; forces beyond their bounds let go. Each is of order one in the
-//! step.
+//! [`Hybrid::step`], and [`Stepped`] for small machines, decide at the step's end: coordinates beyond a stop are set back
+//! to it and hit it; rates that have changed their sign under friction are set to zero; forces beyond their bounds let
+//! go. Each is of order one in the step. What rebounds is the lesser of the rates of approach at the beginning and the
+//! end of the step: a stop that is found late gives no energy, and flights shorter than a step are none, so that what
+//! bounces comes to rest.
 
 mod equations;
 mod guards;
 mod hybrid;
 mod joint;
+mod loads;
 mod resolve;
 mod settle;
 mod small;
+mod stepped;
 
 pub use equations::{Contacts, Forced, Kept};
-pub use hybrid::{Change, Hybrid, Record};
-pub use joint::JointInputs;
+pub use hybrid::Hybrid;
+pub use joint::{JointInputs, LoadedJointInputs};
+pub use settle::{Change, Record};
+pub use stepped::Stepped;
 
 use crate::Real;
 
@@ -89,15 +105,24 @@ pub struct Contact<T> {
     /// Where it is stopped; infinite where it is not.
     ends: [T; 2],
     restitution: T,
-    /// Kinetic and static level of friction.
+    /// Kinetic and static level of friction, and what the reaction adds to them.
     levels: [T; 2],
+    coefficients: [T; 2],
 }
 
 impl<T: Real> Contact<T> {
-    /// Nothing yet, along the coordinate that has this index in the state, and its rate that one.
+    /// Nothing yet, along the coordinate that has this index in the state, and its rate that one. What has no such
+    /// index is zero, and stays so.
     pub fn new(coordinate: usize, rate: usize) -> Self {
         let (zero, infinite) = (T::constant(0.0), T::constant(f64::INFINITY));
-        Self { coordinate, rate, ends: [-infinite, infinite], restitution: zero, levels: [zero; 2] }
+        Self {
+            coordinate,
+            rate,
+            ends: [-infinite, infinite],
+            restitution: zero,
+            levels: [zero; 2],
+            coefficients: [zero; 2],
+        }
     }
 
     /// Stops at a lower and an upper end, in the coordinate's unit, infinite where there is none, with a coefficient of
@@ -116,13 +141,27 @@ impl<T: Real> Contact<T> {
         is_ordered.then_some(Self { levels: [kinetic, at_rest], ..self })
     }
 
+    /// Dry friction in proportion to the [reaction](Forced::reactions) R of the contact, besides: the kinetic and the
+    /// static level are greater by these coefficients times |R|. A coefficient is that of friction, along an angle
+    /// times the bearing's radius, m. `None` unless `0 ≤ kinetic ≤ static` and both are finite.
+    #[must_use]
+    pub fn with_loaded_friction(self, kinetic: T, at_rest: T) -> Option<Self> {
+        let is_ordered = T::constant(0.0) <= kinetic && kinetic <= at_rest && at_rest.is_finite();
+        is_ordered.then_some(Self { coefficients: [kinetic, at_rest], ..self })
+    }
+
     /// Whether it does anything.
     fn acts(&self) -> bool {
         self.rubs() || self.ends.iter().any(|end| end.is_finite())
     }
 
     fn rubs(&self) -> bool {
-        self.levels[1] > T::constant(0.0)
+        self.levels[1] > T::constant(0.0) || self.is_loaded()
+    }
+
+    /// Whether its friction depends on a reaction.
+    fn is_loaded(&self) -> bool {
+        self.coefficients[1] > T::constant(0.0)
     }
 }
 

@@ -1,7 +1,9 @@
 //! Motions with contacts that are known piece by piece.
 
 mod fading;
+mod loads;
 mod loops;
+mod stepped;
 
 use super::resolve::{Hit, impulses, work};
 use super::{Contact, Forced, Hybrid, Phase};
@@ -193,11 +195,11 @@ fn what_sticks_does_not_move_by_one_bit() {
 }
 
 /// Numbers that look random, between two others.
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
     #[expect(clippy::cast_precision_loss, reason = "53 bits are exact")]
-    fn between(&mut self, a: f64, b: f64) -> f64 {
+    pub(super) fn between(&mut self, a: f64, b: f64) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let mixed = (self.0 ^ (self.0 >> 31)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         a + (b - a) * ((mixed >> 11) as f64 / (1_u64 << 53) as f64)

@@ -10,10 +10,21 @@ use super::section::{Section, keyword};
 use super::{names, parameters, references, tables};
 use crate::diagnostics::Related;
 use crate::validate::{Owner, Place};
-use crate::{Contact, Force, ForceKind, Number, Parameter, Rational};
+use crate::{Contact, Force, ForceKind, Joint, Number, Output, OutputKind, Parameter, Rational};
 
-const KEYS: [&str; 8] =
-    ["name", "joint", "coordinate", "lower", "upper", "restitution", "friction", "static_friction"];
+const KEYS: [&str; 11] = [
+    "name",
+    "joint",
+    "coordinate",
+    "lower",
+    "upper",
+    "restitution",
+    "friction",
+    "static_friction",
+    "friction_coefficient",
+    "static_friction_coefficient",
+    "radius",
+];
 
 /// Reads all contacts; their inputs come after so many others.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, n_inputs: usize) -> Vec<Contact> {
@@ -53,8 +64,8 @@ fn contact(
     let on = references::coordinate(reader, &section, &title).unwrap_or(NO_COORDINATE);
     let ends = ["lower", "upper"].map(|key| section.get(key).and_then(|item| number(reader, item)));
     let has_stops = section.has("lower") || section.has("upper");
-    if !has_stops && !section.has("friction") && !section.has("static_friction") {
-        let example = "upper = ..., in rad or m, lower = ..., or friction = ..., in N.m or N";
+    if !has_stops && !KEYS[6..10].iter().any(|key| section.has(key)) {
+        let example = "upper = ..., in rad or m, lower = ..., friction = ..., in N.m or N, or friction_coefficient = ...";
         section.require(reader, "upper", &title, example);
     }
     if has_stops {
@@ -64,14 +75,22 @@ fn contact(
         let help = "remove it, or add lower = ... or upper = ..., in rad or m";
         section.refuse(reader, "restitution", &format!("{title} has no stop to rebound from"), help);
     }
-    let kinetic = section.number_or(reader, "friction", 0);
-    let at_rest = section.get("static_friction").and_then(|item| number(reader, item));
+    let mut pair = |[moving, resting]: [&'static str; 2]| {
+        let kinetic = section.number_or(reader, moving, 0);
+        let at_rest = section.get(resting).and_then(|item| number(reader, item));
+        [kinetic.clone(), at_rest.unwrap_or(kinetic)]
+    };
+    let levels = pair(["friction", "static_friction"]);
+    let coefficients = pair(["friction_coefficient", "static_friction_coefficient"]);
     Contact {
         name,
         on,
         ends,
         restitution: section.number_or(reader, "restitution", 0),
-        levels: [kinetic.clone(), at_rest.unwrap_or(kinetic)],
+        levels,
+        coefficients,
+        radius: section.get("radius").and_then(|item| number(reader, item)),
+        reaction: None,
         input,
     }
 }
@@ -109,6 +128,71 @@ fn shared(reader: &mut Reader<'_>, earlier: &[Contact], index: usize, contact: &
         "write stops and friction of a coordinate in one [[contact]]".to_owned(),
     ];
     reader.clash(place(index), span, related, words);
+}
+
+/// Radii of bearings, which friction about an axis needs, and outputs of the reactions on which friction depends: those
+/// that the model file has, or new ones of the contacts' names.
+pub(super) fn loads(
+    reader: &mut Reader<'_>,
+    contacts: &mut [Contact],
+    joints: &[Joint],
+    outputs: &mut Vec<Output>,
+) {
+    for (index, contact) in contacts.iter_mut().enumerate() {
+        let Some(joint) = joints.get(contact.on.joint) else { continue };
+        let kind = joint.kind.coordinates().get(contact.on.coordinate);
+        radius(reader, index, contact, kind.is_some_and(|kind| kind.is_angle()));
+        if contact.coefficients.iter().all(Number::is_zero) {
+            continue;
+        }
+        let is_own = |output: &Output| matches!(output.kind, OutputKind::Reaction { joint } if joint == contact.on.joint);
+        let found = outputs.iter().position(is_own);
+        if found.is_none() {
+            if outputs.iter().any(|output| output.name == contact.name) {
+                let place = Place { owner: Owner::Contact(index), key: "name" };
+                let words = [
+                    format!("`{}` names a contact, and an output", contact.name),
+                    "used again".to_owned(),
+                    "choose another name: the reaction on which friction depends is an output of its name"
+                        .to_owned(),
+                ];
+                let span = reader.span(place);
+                reader.wrong(place, span, words);
+            }
+            let kind = OutputKind::Reaction { joint: contact.on.joint };
+            outputs.push(Output { name: contact.name.clone(), kind });
+        }
+        contact.reaction = found.or(outputs.len().checked_sub(1));
+    }
+}
+
+/// A bearing's radius is needed about an axis, and has no meaning along one.
+fn radius(reader: &mut Reader<'_>, index: usize, contact: &Contact, is_angle: bool) {
+    let is_loaded = contact.coefficients.iter().any(|coefficient| !coefficient.is_zero());
+    let place = |key| Place { owner: Owner::Contact(index), key };
+    let name = &contact.name;
+    let (place, words) = match (&contact.radius, is_loaded, is_angle) {
+        (None, true, true) => (
+            place("name"),
+            [
+                format!("contact `{name}` has no `radius`"),
+                "needs `radius`".to_owned(),
+                "write radius = ..., that of the bearing in m: friction acts about an axis".to_owned(),
+            ],
+        ),
+        (Some(_), false, _) | (Some(_), _, false) => (
+            place("radius"),
+            [
+                format!("contact `{name}` has no use for a `radius`"),
+                "not allowed here".to_owned(),
+                "remove it: only friction_coefficient about an axis needs the radius of the bearing"
+                    .to_owned(),
+            ],
+        ),
+        _ => return,
+    };
+    let span = reader.span(place);
+    reader.wrong(place, span, words);
 }
 
 impl Contact {

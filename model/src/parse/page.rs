@@ -51,13 +51,14 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let couplers = couplings::couplers(reader, &page);
     let drivers = couplings::drivers(reader, &page);
     let mut forces = forces::read(reader, &page);
-    let contacts = contacts::read(reader, &page, inputs.len());
+    let mut contacts = contacts::read(reader, &page, inputs.len());
     for contact in &contacts {
         inputs.push(contact.own_input());
         between.push(Between::default());
         forces.push(contact.own_force());
     }
-    let outputs = outputs::read(reader, &page);
+    let mut outputs = outputs::read(reader, &page);
+    contacts::loads(reader, &mut contacts, &joints, &mut outputs);
     let controllers = controllers::read(reader, &page, &outputs);
     let events = events::read(reader, &page, &outputs);
     let redundant = Vec::new();

@@ -41,6 +41,19 @@ pub trait Motion<M: Mechanism> {
     /// # Errors
     /// [`Error`] of the correction.
     fn at(&mut self, mechanism: &M, t: f64, y: &mut M::State) -> Result<(), Error>;
+    /// Tells of the inputs that the motion sets by itself, which they are and their values at a time within the last
+    /// step: forces of contacts.
+    ///
+    /// # Errors
+    /// [`Error`] of the correction.
+    fn set_by_itself(
+        &mut self,
+        _mechanism: &M,
+        _t: f64,
+        _tell: &mut dyn FnMut(usize, M::Scalar),
+    ) -> Result<(), Error> {
+        Ok(())
+    }
     /// An input of the mechanism has changed.
     fn set_input(&mut self, index: usize, value: f64);
     /// From time zero on steps under error control end at the knots of a course; equations see its inputs at every

@@ -8,6 +8,7 @@
 use super::course::Course;
 use super::lens::{Lens, Moving, MovingInputs};
 use crate::Input;
+use crate::touch::Touch;
 use gyro_sim::contact::Forced;
 use gyro_sim::{Clearance, Correction, Error, Jacobian, Joint, JointSpace, Mechanism, Ode, Scalar};
 use std::cell::{Ref, RefCell};
@@ -22,8 +23,9 @@ pub(super) struct Fed<L, M: Mechanism> {
 struct Feed<M: Mechanism> {
     mechanism: RefCell<M>,
     pieces: Vec<Piece<M::Scalar>>,
-    /// Of contacts, the inputs that are their forces.
+    /// Of contacts, the inputs that are their forces, and where the reactions of their friction are among the outputs.
     forces: Vec<usize>,
+    reactions: Vec<Option<usize>>,
 }
 
 /// What an input is until the next knot.
@@ -57,6 +59,14 @@ impl<M: Mechanism> Feed<M> {
         self.mechanism.borrow()
     }
 
+    /// The same, under these forces of contacts.
+    fn under(&self, t: M::Scalar, forces: &[M::Scalar]) -> Ref<'_, M> {
+        for (input, force) in self.forces.iter().zip(forces) {
+            self.mechanism.borrow_mut().set_input(*input, *force);
+        }
+        self.at(t)
+    }
+
     fn moving(&self, t: M::Scalar) -> impl Iterator<Item = Moving<M::Scalar>> {
         self.pieces.iter().map(move |piece| piece.at(t))
     }
@@ -74,12 +84,23 @@ impl<L, M: Mechanism> Fed<L, M> {
             mechanism: RefCell::new(mechanism),
             pieces: Vec::new(),
             forces: Vec::new(),
+            reactions: Vec::new(),
         }));
     }
 
     /// From now on these inputs are forces of contacts, set in a copy of the mechanism.
-    pub(super) fn force(&mut self, mechanism: M, forces: Vec<usize>) {
-        self.feed = Some(Box::new(Feed { mechanism: RefCell::new(mechanism), pieces: Vec::new(), forces }));
+    pub(super) fn force(&mut self, mechanism: M, touches: &[Touch]) {
+        self.feed = Some(Box::new(Feed {
+            mechanism: RefCell::new(mechanism),
+            pieces: Vec::new(),
+            forces: touches.iter().map(|touch| touch.input).collect(),
+            reactions: touches.iter().map(|touch| touch.reaction).collect(),
+        }));
+    }
+
+    /// The inputs that are forces of contacts.
+    pub(super) fn forces(&self) -> &[usize] {
+        self.feed.as_ref().map_or(&[], |feed| &feed.forces)
     }
 
     /// An input changes that follows no course.
@@ -114,19 +135,42 @@ impl<L: Ode<M, Scalar = M::Scalar>, M: Mechanism> Ode<M> for Fed<L, M> {
 }
 
 impl<M: JointSpace<Joints: 'static> + 'static> Forced<M> for Fed<Joint, M> {
+    const HAS_REACTIONS: bool = true;
+
     fn rates(&self, mechanism: &M) -> Range<usize> {
         let layout = mechanism.joint_layout();
         let n = layout.n_coordinates();
         n..n + layout.n_rates()
     }
 
+    fn work(&self, mechanism: &M) -> Option<usize> {
+        Some(Forced::<M>::rates(self, mechanism).end)
+    }
+
     fn forced(&self, mechanism: &M, t: M::Scalar, x: &M::Joints, forces: &[M::Scalar], dx: &mut M::Joints) {
         let Some(feed) = &self.feed else { return self.derivative(mechanism, t, x, dx) };
-        for (input, force) in feed.forces.iter().zip(forces) {
-            feed.mechanism.borrow_mut().set_input(*input, *force);
-        }
-        let mechanism = feed.at(t);
+        let mechanism = feed.under(t, forces);
         self.lens.derivative(&*mechanism, t, x, dx);
+    }
+
+    fn reactions(
+        &self,
+        _: &M,
+        t: M::Scalar,
+        x: &M::Joints,
+        forces: &[M::Scalar],
+        out: &mut [[M::Scalar; 3]],
+    ) {
+        let Some(feed) = &self.feed else { return };
+        let mechanism = feed.under(t, forces);
+        let (mut y, mut outputs) = (mechanism.start(), mechanism.buffers().outputs);
+        mechanism.to_maximal(t, x, &mut y);
+        mechanism.outputs(t, &y, &mut outputs);
+        for (out, place) in out.iter_mut().zip(&feed.reactions) {
+            if let Some(force) = place.and_then(|place| outputs.as_ref().get(place..place + 3)) {
+                out.copy_from_slice(force);
+            }
+        }
     }
 }
 

@@ -65,7 +65,7 @@ where
         *to = contact(mechanism, touch)?;
     }
     let mut equations = Fed::of(Joint);
-    equations.force(mechanism.clone(), touches.iter().map(|touch| touch.input).collect());
+    equations.force(mechanism.clone(), touches);
     let zero = Scalar::constant(0.0);
     let hybrid = Hybrid::with_correction(equations, contacts, method, Around(correction), zero, x);
     Ok(hybrid.with_control(control(approach)))
@@ -100,6 +100,10 @@ fn contact<M: JointSpace<Scalar: Real>>(mechanism: &M, touch: &Touch) -> Result<
                 .with_stops(touch.ends.map(constant), constant(touch.restitution))
                 .and_then(|contact| {
                     contact.with_friction(constant(touch.levels[0]), constant(touch.levels[1]))
+                })
+                .and_then(|contact| {
+                    let [kinetic, at_rest] = touch.coefficients.map(constant);
+                    contact.with_loaded_friction(kinetic, at_rest)
                 });
             return contact.ok_or_else(|| "the numbers of a contact make none".to_owned());
         }
@@ -153,6 +157,19 @@ where
         let (mut x, t) = (self.hybrid.state().clone(), Scalar::constant(t));
         self.hybrid.interpolate(mechanism, t, &mut x)?;
         Joint.show(mechanism, t, &x, y);
+        Ok(())
+    }
+
+    fn set_by_itself(
+        &mut self,
+        mechanism: &M,
+        t: f64,
+        tell: &mut dyn FnMut(usize, M::Scalar),
+    ) -> Result<(), Error> {
+        let forces = self.hybrid.forces_at(mechanism, Scalar::constant(t))?;
+        for (input, force) in self.hybrid.dynamics().forces().iter().zip(forces) {
+            tell(*input, force);
+        }
         Ok(())
     }
 

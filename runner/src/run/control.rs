@@ -18,6 +18,8 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
         }
         if self.motion.time() > self.read_at {
             self.read_turns(self.motion.time())?;
+        } else {
+            self.set_by_itself(self.motion.time())?;
         }
         let Self { mechanism, motion, controllers, turns, observer, y, .. } = self;
         let outputs = observer.outputs(mechanism, t, y);

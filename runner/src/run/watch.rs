@@ -86,8 +86,8 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
 
     /// What is looked for, at a time within the last step.
     fn watched(&mut self, t: f64) -> Result<[M::Scalar; Watch::MOST], Error> {
-        let Self { mechanism, motion, watches, turns, observer, y, read_at, .. } = self;
-        motion.at(mechanism, t, y)?;
+        self.look_at(t)?;
+        let Self { mechanism, watches, turns, observer, y, read_at, .. } = self;
         let (time, dt) = (M::Scalar::constant(t), M::Scalar::constant(t - *read_at));
         let mut turns = turns.clone();
         turns.update(mechanism, time, dt, y);
