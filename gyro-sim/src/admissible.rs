@@ -165,7 +165,8 @@ mod tests {
             assert_eq!(check(&[1.0, value], |_| []), Err(Inadmissible { parameter: 1 }), "{value}");
         }
         assert!(check(&[1.0, 0.0, -5.0], |_| []).is_ok());
-        let kinds: [(fn(f64) -> Rule, f64, f64); 3] = [
+        type Kind = fn(f64) -> Rule;
+        let kinds: [(Kind, f64, f64); 3] = [
             (|p| Rule::Positive(-p), -1.0, 0.0),
             (|p| Rule::NotNegative(-p), 0.0, 1.0),
             (|p| Rule::NotZero([0.0, p, 0.0, 0.0]), -1.0, 0.0),
