@@ -1,6 +1,7 @@
 //! Steps of fixed length: what is decided at their ends.
 
 use super::{Cart, Random, fine, random_cart};
+use crate::contact::resolve::{Hit, impulses};
 use crate::contact::{Contact, Forced, Hybrid, Phase, Stepped};
 use crate::{Dop853, Kutta4, Ode, Real};
 use core::ops::Range;
@@ -172,6 +173,35 @@ fn single_precision_decides_as_double_precision_does() {
     }
     // An impact may be found a step earlier or later.
     assert!(alike > 285 && impacts > 400, "{alike} {impacts}");
+}
+
+/// Of four contacts two or three are independent: what is left of the others' pivots is rounding.
+#[test]
+fn dependent_impulses_are_told_in_single_precision() {
+    let mut random = Random(47);
+    let mut alike = 0;
+    for case in 0..1000 {
+        let rank = 2 + case % 2;
+        let g: [[f64; 4]; 4] = core::array::from_fn(|_| core::array::from_fn(|_| random.between(-1.0, 1.0)));
+        let compliance: [[f64; 4]; 4] =
+            core::array::from_fn(|i| core::array::from_fn(|k| (0..rank).map(|r| g[r][i] * g[r][k]).sum()));
+        let freedoms: [f64; 4] = core::array::from_fn(|_| random.between(-1.0, 1.0));
+        let rates: [f64; 4] = core::array::from_fn(|i| (0..rank).map(|r| g[r][i] * freedoms[r]).sum());
+        let restitution = random.between(0.0, 1.0);
+        let hits = rates.map(|rate| Some(Hit { outward: -rate.signum(), restitution }));
+        let of_single = |hit: Hit<f64>| Hit { outward: hit.outward as f32, restitution: restitution as f32 };
+        let single = impulses(
+            &compliance.map(|row| row.map(|x| x as f32)),
+            &rates.map(|rate| rate as f32),
+            &hits.map(|hit| hit.map(of_single)),
+        );
+        let double = impulses(&compliance, &rates, &hits);
+        let largest = rates.into_iter().fold(0.0, |most: f64, rate| most.max(rate.abs()));
+        let is_near = |(a, b): (f32, f64)| (f64::from(a) - b).abs() < 1e-3 * largest;
+        alike += u32::from(single.1.into_iter().zip(double.1).all(is_near));
+    }
+    // Elsewhere three are nearly two.
+    assert!(alike > 990, "{alike}");
 }
 
 #[test]
