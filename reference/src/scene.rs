@@ -69,8 +69,8 @@ enum Joints {
     UniversalAndSpherical,
 }
 
-/// The motion of the model file of this name, such as `gyroscope-fast`, with inputs of zero and without contacts; `None`
-/// if there is no such model file or it has no joints.
+/// The motion of the model file of this name, such as `gyroscope-fast`, with inputs of zero and without contacts;
+/// `None` if there is no such model file or it has no joints.
 #[must_use]
 pub fn scene(model_name: &str) -> Option<SceneReference> {
     let motion = match model_name {

@@ -72,11 +72,11 @@
 //! [`Error::Jammed`](crate::Error::Jammed), and so it does where no combination of phases is consistent.
 //!
 //! # Order under steps of fixed length
-//! [`Hybrid::step`], and [`Stepped`] for small machines, decide at the step's end: coordinates beyond a stop are set back
-//! to it and hit it; rates that have changed their sign under friction are set to zero; forces beyond their bounds let
-//! go. Each is of order one in the step. What rebounds is the lesser of the rates of approach at the beginning and the
-//! end of the step: a stop that is found late gives no energy, and flights shorter than a step are none, so that what
-//! bounces comes to rest.
+//! [`Hybrid::step`], and [`Stepped`] for small machines, decide at the step's end: coordinates beyond a stop are set
+//! back to it and hit it; rates that have changed their sign under friction are set to zero; forces beyond their
+//! bounds let go. Each is of order one in the step. What rebounds is the lesser of the rates of approach at the
+//! beginning and the end of the step: a stop that is found late gives no energy, and flights shorter than a step are
+//! none, so that what bounces comes to rest.
 
 mod equations;
 mod guards;

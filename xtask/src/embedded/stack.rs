@@ -23,7 +23,7 @@ const INTERRUPT: u64 = 4 * (8 + 18 + 1);
 /// The interrupt that the firmware has.
 const HANDLER: &str = "SysTick";
 
-/// Functions in assembly, of which the compiler says nothing, and the bytes that they keep, as their disassembly has it.
+/// Functions in assembly, of which the compiler says nothing, and the bytes that they keep by their disassembly.
 const ASSEMBLY: [(&str, u64); 3] = [("Reset", 8), ("HardFault", 8), ("__aeabi_uldivmod", 24)];
 
 /// The bound of a program.

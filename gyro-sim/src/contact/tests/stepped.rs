@@ -1,6 +1,7 @@
 //! Steps of fixed length: what is decided at their ends.
 
 use super::{Cart, Random, fine, random_cart};
+use crate::contact::resolve::{Hit, impulses};
 use crate::contact::{Contact, Forced, Hybrid, Phase, Stepped};
 use crate::{Dop853, Kutta4, Ode, Real};
 use core::ops::Range;
@@ -172,6 +173,80 @@ fn single_precision_decides_as_double_precision_does() {
     }
     // An impact may be found a step earlier or later.
     assert!(alike > 285 && impacts > 400, "{alike} {impacts}");
+}
+
+/// Of four contacts two or three are independent: what is left of the others' pivots is rounding.
+#[test]
+fn dependent_impulses_are_told_in_single_precision() {
+    let mut random = Random(47);
+    let (mut alike, mut vast) = (0, 0);
+    for case in 0..1000 {
+        let rank = 2 + case % 2;
+        let g: [[f64; 4]; 4] = core::array::from_fn(|_| core::array::from_fn(|_| random.between(-1.0, 1.0)));
+        let compliance: [[f64; 4]; 4] =
+            core::array::from_fn(|i| core::array::from_fn(|k| (0..rank).map(|r| g[r][i] * g[r][k]).sum()));
+        let freedoms: [f64; 4] = core::array::from_fn(|_| random.between(-1.0, 1.0));
+        let rates: [f64; 4] = core::array::from_fn(|i| (0..rank).map(|r| g[r][i] * freedoms[r]).sum());
+        let restitution = random.between(0.0, 1.0);
+        let hits = rates.map(|rate| Some(Hit { outward: -rate.signum(), restitution }));
+        let of_single = |hit: Hit<f64>| Hit { outward: hit.outward as f32, restitution: restitution as f32 };
+        let single = impulses(
+            &compliance.map(|row| row.map(|x| x as f32)),
+            &rates.map(|rate| rate as f32),
+            &hits.map(|hit| hit.map(of_single)),
+        );
+        let double = impulses(&compliance, &rates, &hits);
+        let largest = rates.into_iter().fold(0.0, |most: f64, rate| most.max(rate.abs()));
+        let is_near = |(a, b): (f32, f64)| (f64::from(a) - b).abs() < 1e-3 * largest;
+        alike += u32::from(single.1.into_iter().zip(double.1).all(is_near));
+        let most = |impulses: [f64; 4]| impulses.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        vast += u32::from(most(single.0.map(f64::from)) > 3.0 * most(double.0));
+    }
+    // Elsewhere three are nearly two.
+    assert!(alike > 990 && vast < 10, "{alike} {vast}");
+}
+
+/// Three masses in a row on the ground, each carrying the next: what holds them is solved for to rounding.
+#[derive(Clone, Copy)]
+struct Stack([f32; 3], [f32; 3]);
+
+impl Ode for Stack {
+    type Scalar = f32;
+    type State = [f32; 6];
+
+    fn derivative(&self, model: &(), t: f32, y: &[f32; 6], dy: &mut [f32; 6]) {
+        self.forced(model, t, y, &[0.0; 3], dy);
+    }
+}
+
+impl Forced for Stack {
+    fn rates(&self, _: &()) -> Range<usize> {
+        3..6
+    }
+
+    fn forced(&self, _: &(), _: f32, y: &[f32; 6], forces: &[f32], dy: &mut [f32; 6]) {
+        // Along relative coordinates; of each mass the acceleration in space.
+        let pushes: [f32; 3] = core::array::from_fn(|k| forces[k] + self.1[k]);
+        let [a, b, c] = [pushes[0] - pushes[1], pushes[1] - pushes[2], pushes[2]];
+        let [a, b, c] = [a / self.0[0], b / self.0[1], c / self.0[2]];
+        *dy = [y[3], y[4], y[5], a, b - a, c - b];
+    }
+}
+
+#[test]
+fn what_is_held_in_single_precision_is_not_called_jammed() {
+    let mut random = Random(53);
+    for case in 0..2000 {
+        let mut numbers = |low, high| core::array::from_fn(|_| random.between(low, high) as f32);
+        let stack = Stack(numbers(0.05, 20.0), numbers(-1.0, 1.0));
+        let contacts = [0, 1, 2].map(|k| Contact::new(k, k + 3).with_friction(2.0, 3.0).unwrap());
+        let mut y = [0.0, 0.0, 0.0, random.between(-1.0, 1.0) as f32, 0.0, 0.0];
+        let mut motion = Stepped::new(stack, contacts, &y);
+        for step in 0..20 {
+            let outcome = motion.advance(&(), step as f32 * 1e-2, 1e-2, 1, &mut y);
+            assert!(outcome.is_ok(), "case {case}, step {step}: {outcome:?}");
+        }
+    }
 }
 
 #[test]
