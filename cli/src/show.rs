@@ -101,17 +101,18 @@ fn refuse_other_results(args: &SimulateArgs) -> Result<(), Failure> {
     }
 }
 
-/// The engine that answers first, unless one is asked for.
+/// The engine that answers first, unless one is asked for; the coordinates in which contacts are known.
 fn with_engine(args: &SimulateArgs) -> Result<SimulateArgs, Failure> {
-    if args.engine.is_some() {
-        return Ok(args.clone());
+    let (mut args, model) = (args.clone(), crate::scene::read(&args.model)?);
+    if !model.contacts.is_empty() {
+        args.coordinates = Coordinates::Joint;
     }
     let needs_code = args.coordinates == Coordinates::Joint
         || args.correction == Some(Correction::ClosedForm)
         || args.integrator == Integrator::Rodas4;
-    let engine =
-        if needs_code { Engine::Generated } else { quickest(&crate::scene::read(&args.model)?, args) };
-    Ok(SimulateArgs { engine: Some(engine), ..args.clone() })
+    let engine = if needs_code { Engine::Generated } else { quickest(&model, &args) };
+    args.engine = args.engine.or(Some(engine));
+    Ok(args)
 }
 
 /// Time that generating and compiling takes, s: what the runtime-assembled model has to answer in.

@@ -21,7 +21,7 @@ use crate::write::{Known, digest, write};
 use crate::{files, programs, remarks};
 use gyro_runner::{duration_words, protocol};
 use gyro_sweep::child::Job;
-use gyro_sweep::record::Block;
+use gyro_sweep::record::{self, Block};
 use indicatif::{ProgressBar, ProgressStyle};
 use loaded::Loaded;
 use program::{Program, Way, program};
@@ -31,7 +31,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 use store::{Head, Store};
-use workers::Workers;
+use workers::{Records, Workers};
 
 /// Runs a study, or puts parts of one together.
 pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
@@ -56,7 +56,7 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
 }
 
 /// Takes records, in their order.
-type Keep<'a> = dyn FnMut(Vec<u8>) -> Result<(), Failure> + 'a;
+type Keep<'a> = dyn FnMut(Records) -> Result<(), Failure> + 'a;
 
 /// A sweep that can be made.
 struct Sweep {
@@ -122,13 +122,16 @@ impl Sweep {
             first * u64::from(self.head.block),
         );
         let (mut done, mut failed) = (0, 0);
-        let mut keep = |bytes: Vec<u8>| {
-            let block = Block::decode(&bytes, self.head.width)
-                .map_err(|error| Failure::Run(format!("the program answers nonsense: {error}")))?;
-            done += u64::from(block.count);
-            failed += block.errors.len() as u64;
-            progress.advance(u64::from(block.count), failed);
-            store.append(&bytes)
+        let nonsense = |error| Failure::Run(format!("the program answers nonsense: {error}"));
+        let mut keep = |records: Records| {
+            let (mut rest, before) = (&records.bytes[..], done);
+            while let Some(bytes) = record::next(&mut rest).map_err(nonsense)? {
+                let block = Block::decode(&bytes, self.head.width).map_err(nonsense)?;
+                done += u64::from(block.count);
+                failed += block.errors.len() as u64;
+            }
+            progress.advance(done - before, failed);
+            store.append(&records.bytes, records.count)
         };
         let began = Instant::now();
         run(first..end, &mut keep)?;
@@ -159,7 +162,7 @@ impl Sweep {
         &self,
         places: Range<u64>,
         tell: impl FnOnce(f64, Range<u64>),
-        mut keep: impl FnMut(Vec<u8>) -> Result<(), Failure>,
+        mut keep: impl FnMut(Records) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let mut run = |places: Range<u64>| {
             let began = Instant::now();

@@ -182,7 +182,11 @@ fn a_page_of_contacts_has_smooth_ones_beside_them() {
     let output = report(&["--quick", &shown(&page), "--out", &shown(&out)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let markdown = folder.text("out/rubbing.md");
-    for words in ["## Rigid and smooth stops and friction", "nothing else follows rigid stops", "of motions from event to event"] {
+    for words in [
+        "## Rigid and smooth stops and friction",
+        "nothing else follows rigid stops",
+        "of motions from event to event",
+    ] {
         assert!(markdown.contains(words), "{words} in {markdown}");
     }
     assert!(folder.text("out/images/rubbing-smooth.svg").contains("<polyline"));

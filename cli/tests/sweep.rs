@@ -357,6 +357,7 @@ run = {{ coordinates = "joint", tolerance = 1e-11, integrator = "dop853", t_end 
 final = ["pen.rx", "rocker_pivot", "knee rate z", "energy"]
 extremes = "rocker_pivot"
 passages = [{{ of = "crank_pivot", above = 2 }}]
+series = ["rocker_pivot", "energy"]
 sensitivities = true
 [[vary]]
 parameter = ["crank", "coupler"]
@@ -372,11 +373,11 @@ values = {rate:?}
         let study = folder.study("studies/models/coupler-curve.toml", text);
         let out = folder.0.join(name);
         ran(&[study.to_str().unwrap(), "--out", out.to_str().unwrap()]);
-        rows(&out.join("scenarios.csv"))
+        [rows(&out.join("scenarios.csv")), rows(&out.join("series.csv"))]
     };
-    let lengths = run(&study(&parameters[..9], &rates[..1]), "lengths");
+    let [lengths, series_of_lengths] = run(&study(&parameters[..9], &rates[..1]), "lengths");
     let rates = [&rates[..1], &rates[9..]].concat();
-    let of_rate = run(&study(&parameters[..1], &rates), "rates");
+    let [of_rate, series_of_rate] = run(&study(&parameters[..1], &rates), "rates");
     let numbers = 7;
     let mut judged = 0;
     for (target, table, first) in [(0, &lengths, 1), (1, &lengths, 5), (2, &of_rate, 1)] {
@@ -392,6 +393,25 @@ values = {rate:?}
         }
     }
     assert!(judged > 15, "{judged}");
+    // Series: 16 samples of each scenario; k, t, two numbers, their derivatives by what varies in this study.
+    let samples = 16;
+    judged = 0;
+    for (target, table, first) in
+        [(0, &series_of_lengths, 1), (1, &series_of_lengths, 5), (2, &series_of_rate, 1)]
+    {
+        assert_eq!(table[samples - 1][..2], [0.0, 0.3]);
+        for (sample, number) in (0..samples).flat_map(|sample| [(sample, 0), (sample, 1)]) {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| table[(first + k) * samples + sample][2 + number]);
+            let expected = (8.0 * (c - b) - (d - a)) / (12.0 * apart);
+            let found = table[sample][4 + 3 * number + target];
+            assert!(
+                (found - expected).abs() < 1e-6 * (1.0 + expected.abs()),
+                "sample {sample} of {number}, {target}: {found} {expected}"
+            );
+            judged += usize::from(expected.abs() > 1e-6);
+        }
+    }
+    assert!(judged > 60, "{judged}");
 }
 
 /// Tables of a study are, between their rows, what `simulate --input` makes of them.

@@ -177,6 +177,7 @@ impl Writer<'_> {
         }
         format!(
             "\n/* A mechanism with its parameters and inputs. */\ntypedef struct {{\n{}\n}} {name};\n\n\
+             /* Its bytes, for callers that cannot read this header. */\nsize_t {name}_bytes(void);\n\n\
              /* Sets all parameters and inputs to those of the model file. */\nvoid {name}_init({name} *m);\n\n\
              /* Sets a parameter; returns whether there is one of this index, and the number is finite. */\n\
              int {name}_set_parameter({name} *m, int index, {real} value);\n\n\
@@ -298,7 +299,8 @@ impl Writer<'_> {
         };
         let then = if self.module.n_derived > 0 { format!("    {name}_derive(m);\n") } else { String::new() };
         format!(
-            "{derive}\nvoid {name}_init({name} *m)\n{{\n{init}}}\n{}{}",
+            "{derive}\nsize_t {name}_bytes(void)\n{{\n    return sizeof({name});\n}}\n\n\
+             void {name}_init({name} *m)\n{{\n{init}}}\n{}{}",
             setter("parameter", "parameters", self.model.parameters.len(), &then),
             setter("input", "inputs", self.model.inputs.len(), "")
         )

@@ -52,7 +52,10 @@ pub const OPTIONS: &[&str] = &[
 ];
 
 /// Functions of the run time that are exported under the mechanism's name.
-const SOLVER: [&str; 9] = [
+const SOLVER: [&str; 12] = [
+    "solver_bytes",
+    "solver_time",
+    "solver_state",
     "solver_init",
     "solver_step",
     "solver_step_towards",

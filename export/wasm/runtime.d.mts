@@ -1,4 +1,7 @@
-/** Numbers that are read: an array or a typed one. */
+/**
+ * Numbers that are read: an array or a typed one. Wrong types are refused by a `TypeError`, wrong lengths and numbers that
+ * are not finite by a `RangeError`, before anything is computed.
+ */
 export type Numbers = ArrayLike<number>;
 /** Numbers that are written. */
 export type Real = {Real};
@@ -53,9 +56,9 @@ export interface Options {
   firstStep?: number;
   smallestStep?: number;
   largestStep?: number;
-  /** Of steps, accepted and rejected. */
+  /** Of steps, accepted and rejected; a whole number. */
   budget?: number;
-  /** Steps between two corrections. */
+  /** Steps between two corrections; a whole number, 1 unless it says otherwise. */
   correctEvery?: number;
 }
 

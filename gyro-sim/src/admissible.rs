@@ -2,53 +2,32 @@
 //! are set.
 //!
 //! `cargo xtask simulate --set` decides them exactly, in rationals; here they are decided in floating point, and what
-//! is on the boundary by no more than rounding is allowed. A generated module lists its rules in `Parameters::check`:
+//! is on the boundary by no more than rounding is allowed. A generated module computes the numbers of its rules in
+//! `Parameters::check`:
 //! ```
-//! # #[cfg(feature = "generated")]
-//! # {
-//! use gyro_sim::admissible::{Number, Rule, check};
-//! let rules = [Rule::Positive(Number::Given(0))];
-//! assert!(check(&[0.085], &rules).is_ok());
-//! assert_eq!(check(&[-0.085], &rules).unwrap_err().parameter, 0);
-//! assert!(check(&[f64::NAN], &rules).is_err());
-//! # }
+//! use gyro_sim::admissible::{Rule, check};
+//! let rules = |p: [f64; 1]| [(0, Rule::Positive(p[0]))];
+//! assert!(check(&[0.085], rules).is_ok());
+//! assert_eq!(check(&[-0.085], rules).unwrap_err().parameter, 0);
+//! assert!(check(&[f64::NAN], rules).is_err());
 //! ```
 
 use crate::Real;
 use core::fmt;
 
-/// A number of a model file.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Number {
-    /// Written out.
-    Fixed(f64),
-    /// The parameter of this place.
-    Given(u16),
-    /// The negative of the parameter of this place.
-    Negated(u16),
-    /// The sum of both.
-    Sum(&'static [Self; 2]),
-    /// The product of both.
-    Product(&'static [Self; 2]),
-    /// The first divided by the second.
-    Quotient(&'static [Self; 2]),
-    /// A power.
-    Power(&'static Self, u32),
-}
-
-/// What must hold of numbers of which at least one is a parameter.
+/// What must hold of numbers that depend on parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rule {
     /// Masses, lengths, coefficients that hold something.
-    Positive(Number),
+    Positive(f64),
     /// Coefficients that would drive the motion.
-    NotNegative(Number),
-    /// Ratios, leads, directions, Euler parameters: not all are zero.
-    NotZero(&'static [Number]),
+    NotNegative(f64),
+    /// Ratios, leads, directions, Euler parameters: not all are zero. Fewer than four numbers are followed by zeros.
+    NotZero([f64; 4]),
     /// An axis and a zero direction: they span a plane.
-    NotParallel([Number; 3], [Number; 3]),
+    NotParallel([f64; 3], [f64; 3]),
     /// `[xx, yy, zz, xy, xz, yz]`: positive definite, and no principal moment exceeds the sum of the other two.
-    Inertia([Number; 6]),
+    Inertia([f64; 6]),
 }
 
 /// A parameter that a mechanism cannot have, on its own or with the others as they are.
@@ -72,85 +51,51 @@ const SIZES: [f64; 2] = [1e-100, 1e100];
 /// What rounding may take from an inequality that is allowed to be an equality.
 const ROUNDING: f64 = 8.0;
 
-/// Whether parameters satisfy all rules, and are numbers that a model file may have: 0, or of a size from 1e-100 to
-/// 1e100.
+/// Whether parameters are numbers that a model file may have, 0 or of a size from 1e-100 to 1e100, and satisfy all
+/// rules. `rules` computes these of the parameters; each comes with the place of the first parameter in it.
 ///
 /// # Errors
 /// [`Inadmissible`] names the first parameter that is not such a number, or that occurs in a rule which is broken.
-pub fn check<T: Real>(values: &[T], rules: &[Rule]) -> Result<(), Inadmissible> {
-    let is_number = |value: &T| {
-        let size = value.to_f64().abs();
-        size == 0.0 || (SIZES[0]..=SIZES[1]).contains(&size)
-    };
-    if let Some((parameter, _)) = (0u16..).zip(values).find(|(_, value)| !is_number(value)) {
+#[inline]
+pub fn check<T: Real, const N: usize, const R: usize>(
+    values: &[T; N],
+    rules: impl FnOnce([f64; N]) -> [(u16, Rule); R],
+) -> Result<(), Inadmissible> {
+    let values = values.map(T::to_f64);
+    let is_number = |value: &f64| *value == 0.0 || (SIZES[0]..=SIZES[1]).contains(&value.abs());
+    if let Some((parameter, _)) = (0u16..).zip(&values).find(|(_, value)| !is_number(value)) {
         return Err(Inadmissible { parameter });
     }
-    match rules.iter().find(|rule| !rule.holds(values)) {
-        Some(rule) => Err(Inadmissible { parameter: rule.parameter() }),
+    match rules(values).into_iter().find(|(_, rule)| !rule.holds::<T>()) {
+        Some((parameter, _)) => Err(Inadmissible { parameter }),
         None => Ok(()),
     }
 }
 
-impl Number {
-    fn value<T: Real>(self, values: &[T]) -> f64 {
-        // A place that does not exist breaks any rule.
-        let of = |place: u16| values.get(usize::from(place)).map_or(f64::NAN, |value| value.to_f64());
-        match self {
-            Self::Fixed(value) => value,
-            Self::Given(place) => of(place),
-            Self::Negated(place) => -of(place),
-            Self::Sum([a, b]) => a.value(values) + b.value(values),
-            Self::Product([a, b]) => a.value(values) * b.value(values),
-            Self::Quotient([a, b]) => a.value(values) / b.value(values),
-            Self::Power(base, exponent) => {
-                let base = base.value(values);
-                (0..exponent).fold(1.0, |power, _| power * base)
-            }
-        }
-    }
-
-    fn parameter(self) -> Option<u16> {
-        match self {
-            Self::Fixed(_) => None,
-            Self::Given(place) | Self::Negated(place) => Some(place),
-            Self::Sum([a, b]) | Self::Product([a, b]) | Self::Quotient([a, b]) => {
-                a.parameter().or_else(|| b.parameter())
-            }
-            Self::Power(base, _) => base.parameter(),
-        }
-    }
+/// A power with a whole exponent, as rules have it.
+#[inline]
+#[must_use]
+pub fn power(base: f64, exponent: u32) -> f64 {
+    (0..exponent).fold(1.0, |power, _| power * base)
 }
 
 impl Rule {
-    fn holds<T: Real>(&self, values: &[T]) -> bool {
+    #[inline]
+    fn holds<T: Real>(self) -> bool {
         match self {
-            Self::Positive(number) => number.value(values) > 0.0,
-            Self::NotNegative(number) => number.value(values) >= 0.0,
-            Self::NotZero(numbers) => numbers.iter().any(|number| number.value(values) != 0.0),
+            Self::Positive(number) => number > 0.0,
+            Self::NotNegative(number) => number >= 0.0,
+            Self::NotZero(numbers) => numbers.iter().any(|number| *number != 0.0),
             Self::NotParallel(a, b) => {
-                let [a, b] = [a, b].map(|vector| vector.map(|number| number.value(values)));
                 let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
                 let size = |v: [f64; 3]| libm::sqrt(v.iter().fold(0.0, |sum, x| sum + x * x));
                 size(cross) > ROUNDING * f64::EPSILON * size(a) * size(b)
             }
             Self::Inertia(elements) => {
                 // In the precision in which they are set equality is known to so much.
-                let slack = ROUNDING * T::EPSILON.to_f64().max(f64::EPSILON);
-                is_inertia(elements.map(|number| number.value(values)), slack)
+                is_inertia(elements, ROUNDING * T::EPSILON.to_f64().max(f64::EPSILON))
             }
         }
-    }
-
-    /// The first parameter in it.
-    fn parameter(&self) -> u16 {
-        let of = |numbers: &[Number]| numbers.iter().find_map(|number| number.parameter());
-        let parameter = match self {
-            Self::Positive(number) | Self::NotNegative(number) => number.parameter(),
-            Self::NotZero(numbers) => of(numbers),
-            Self::NotParallel(a, b) => of(a).or_else(|| of(b)),
-            Self::Inertia(elements) => of(elements),
-        };
-        parameter.unwrap_or_default()
     }
 }
 
@@ -183,15 +128,6 @@ fn determinant(&[xx, yy, zz, xy, xz, yz]: &[f64; 6]) -> f64 {
 mod tests {
     use super::*;
 
-    const ALL: [Number; 6] = [
-        Number::Given(0),
-        Number::Given(1),
-        Number::Given(2),
-        Number::Given(3),
-        Number::Given(4),
-        Number::Given(5),
-    ];
-
     #[test]
     fn inertias_are_decided_on_the_boundary() {
         let cases: [([f64; 6], bool); 9] = [
@@ -206,39 +142,41 @@ mod tests {
             ([1e-90, 1e-90, 1e-90, 0.0, 0.0, 0.0], true),
         ];
         for (elements, is_allowed) in cases {
-            assert_eq!(check(&elements, &[Rule::Inertia(ALL)]).is_ok(), is_allowed, "{elements:?}");
+            let is_inertia = check(&elements, |elements| [(0, Rule::Inertia(elements))]).is_ok();
+            assert_eq!(is_inertia, is_allowed, "{elements:?}");
         }
     }
 
     /// `m L² / 12 − 1` of m = 3 and L = 2 is zero.
     #[test]
     fn computed_numbers_are_judged_by_their_values() {
-        use Number::{Fixed, Given, Power, Product, Quotient, Sum};
-        const SQUARE: Number = Power(&Given(1), 2);
-        const INERTIA: Number = Quotient(&[Product(&[Given(0), SQUARE]), Fixed(12.0)]);
-        let number = Sum(&[INERTIA, Fixed(-1.0)]);
-        assert!(check(&[3.0, 2.0], &[Rule::NotNegative(number)]).is_ok());
-        assert_eq!(check(&[2.9, 2.0], &[Rule::NotNegative(number)]), Err(Inadmissible { parameter: 0 }));
-        assert!(check(&[3.0, 2.0], &[Rule::Positive(number)]).is_err());
-        assert!(check(&[3.0, -2.1], &[Rule::Positive(number)]).is_ok());
+        let number = |p: [f64; 2]| p[0] * power(p[1], 2) / 12.0 - 1.0;
+        let positive = |p| [(0, Rule::Positive(number(p)))];
+        let not_negative = |p| [(0, Rule::NotNegative(number(p)))];
+        assert!(check(&[3.0, 2.0], not_negative).is_ok());
+        assert_eq!(check(&[2.9, 2.0], not_negative), Err(Inadmissible { parameter: 0 }));
+        assert!(check(&[3.0, 2.0], positive).is_err());
+        assert!(check(&[3.0, -2.1], positive).is_ok());
     }
 
     #[test]
     fn what_is_no_number_of_a_page_breaks_any_rule() {
         for value in [f64::NAN, f64::INFINITY, 1e-101, -1e101] {
-            assert_eq!(check(&[1.0, value], &[]), Err(Inadmissible { parameter: 1 }), "{value}");
+            assert_eq!(check(&[1.0, value], |_| []), Err(Inadmissible { parameter: 1 }), "{value}");
         }
-        assert!(check(&[1.0, 0.0, -5.0], &[]).is_ok());
-        let one = [Number::Negated(0)];
-        for (rule, good, bad) in [
-            (Rule::Positive(one[0]), -1.0, 0.0),
-            (Rule::NotNegative(one[0]), 0.0, 1.0),
-            (Rule::NotZero(&[Number::Given(0)]), -1.0, 0.0),
-        ] {
-            assert!(check(&[good], &[rule]).is_ok() && check(&[bad], &[rule]).is_err(), "{rule:?}");
+        assert!(check(&[1.0, 0.0, -5.0], |_| []).is_ok());
+        type Kind = fn(f64) -> Rule;
+        let kinds: [(Kind, f64, f64); 3] = [
+            (|p| Rule::Positive(-p), -1.0, 0.0),
+            (|p| Rule::NotNegative(-p), 0.0, 1.0),
+            (|p| Rule::NotZero([0.0, p, 0.0, 0.0]), -1.0, 0.0),
+        ];
+        for (rule, good, bad) in kinds {
+            let rules = |p: [f64; 1]| [(0, rule(p[0]))];
+            assert!(check(&[good], rules).is_ok() && check(&[bad], rules).is_err(), "{:?}", rule(good));
         }
-        let fixed = [1.0, 2.0, 0.0].map(Number::Fixed);
-        let rule = Rule::NotParallel(fixed, [Number::Given(0), Number::Given(1), Number::Fixed(0.0)]);
-        assert!(check(&[2.0, 1.0], &[rule]).is_ok() && check(&[-3.0, -6.0], &[rule]).is_err());
+        let rules = |p: [f64; 2]| [(0, Rule::NotParallel([1.0, 2.0, 0.0], [p[0], p[1], 0.0]))];
+        assert!(check(&[2.0, 1.0], rules).is_ok() && check(&[-3.0, -6.0], rules).is_err());
+        assert_eq!(check(&[2.0, 0.0], |p| [(1, Rule::Positive(p[1]))]), Err(Inadmissible { parameter: 1 }));
     }
 }

@@ -1,4 +1,5 @@
-//! The paper's gyroscope on a base that rolls and pitches about the common centre of the rings.
+//! The paper's gyroscope on a base that rolls and pitches about the common centre of the rings; and a camera on
+//! a gimbal whose base rolls and yaws.
 //!
 //! The base has A = Rx(roll) Rz(pitch), roll about the global x axis and pitch about the z axis that the roll
 //! has turned, each `amplitude · sin(2π · frequency · t)`. On it α, β and φ follow as in the [crate]'s
@@ -13,7 +14,7 @@
 //! assert!(alpha.abs() < 0.1 && beta.abs() < 0.2 && (phi - 10.0).abs() < 0.1);
 //! ```
 
-use core::f64::consts::TAU;
+use core::f64::consts::{FRAC_PI_3, PI, TAU};
 
 use crate::{BaseMotion, Chain, ChainSample, Link, Sinusoid};
 
@@ -61,6 +62,33 @@ pub fn rolling_and_pitching() -> Chain<3> {
 pub fn rolling_fast() -> Chain<3> {
     let roll = Sinusoid { amplitude: 0.5, angular_frequency: 20.0 * TAU, phase: 0.0 };
     Chain { base: BaseMotion::turning(vec![([1.0, 0.0, 0.0], roll)]), ..resting() }
+}
+
+/// A camera on the tilt axis of a yoke that pans, on a base that rolls 0.15 sin(2π·0.5 t) rad about the global
+/// x axis and yaws 0.05 sin(2π·1.3 t) rad about the rolled z axis: without motors, friction and stops.
+#[must_use]
+pub fn loose_camera() -> Chain<2> {
+    let wave = |amplitude, hertz| Sinusoid { amplitude, angular_frequency: hertz * TAU, phase: 0.0 };
+    let pan = Link {
+        before: [0.0, 0.0, 0.1],
+        own: [0.0, 0.0, -0.08],
+        start: FRAC_PI_3,
+        ..Link::turning([0.0, 0.0, 1.0])
+    };
+    let tilt = Link {
+        before: [0.0, 0.0, 0.05],
+        own: [-1e-3, 0.0, 0.0],
+        start: PI / 18.0,
+        ..Link::turning([0.0, 1.0, 0.0])
+    };
+    Chain {
+        gravity: [0.0, 0.0, -9.81],
+        base: BaseMotion::turning(vec![
+            ([1.0, 0.0, 0.0], wave(0.15, 0.5)),
+            ([0.0, 0.0, 1.0], wave(0.05, 1.3)),
+        ]),
+        links: [pan.with_body(1.5, [5e-3, 4e-3, 4e-3]), tilt.with_body(2.0, [4e-3, 6e-3, 6e-3])],
+    }
 }
 
 /// What the bearings of α, β and φ exert on outer ring, inner ring and rotor: force (N) along f, g and h of

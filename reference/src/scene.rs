@@ -2,7 +2,7 @@
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
-use crate::moving_base::{rolling, rolling_and_pitching, rolling_fast};
+use crate::moving_base::{loose_camera, rolling, rolling_and_pitching, rolling_fast};
 use crate::vector::{dot, sub};
 use crate::{
     AxisForce, Bar, BodyState, BushingFourBar, Chain, DoubleWishbone, FourBar, FourBarSample, Gyroscope,
@@ -44,6 +44,8 @@ enum Motion {
     Periodic(ReducedGyroscope),
     /// A gyroscope on a base that moves.
     Carried(Box<Chain<3>>),
+    /// Two axes on a base that moves.
+    TwoAxes(Box<Chain<2>>),
     Top(HeavyTop),
     Axis(OneAxis),
     Pendulum(Pendulum),
@@ -67,8 +69,8 @@ enum Joints {
     UniversalAndSpherical,
 }
 
-/// The motion of the model file of this name, such as `gyroscope-fast`; `None` if there is no such model file or it has
-/// no joints.
+/// The motion of the model file of this name, such as `gyroscope-fast`, with inputs of zero and without contacts;
+/// `None` if there is no such model file or it has no joints.
 #[must_use]
 pub fn scene(model_name: &str) -> Option<SceneReference> {
     let motion = match model_name {
@@ -93,6 +95,7 @@ pub fn scene(model_name: &str) -> Option<SceneReference> {
         "pitching-gyroscope" => Motion::Carried(Box::new(rolling_and_pitching())),
         "slider-crank" => Motion::SliderCrank(SliderCrank::in_line()),
         "spinning-top" => Motion::Top(HeavyTop::benchmark()),
+        "stabilised-gimbal" => Motion::TwoAxes(Box::new(loose_camera())),
         "stewart-platform" => Motion::Stewart(Box::new(StewartPlatform::plate_of_ten_kilograms())),
         "torsion" => Motion::Axis(OneAxis::torsion()),
         name => Motion::Reduced(extreme(name)?),
@@ -112,6 +115,10 @@ impl SceneReference {
             Motion::Reduced(gyroscope) => gyroscope.solve(times).iter().map(of_gimbal).collect(),
             Motion::Periodic(gyroscope) => gyroscope.solve_by_periods(times).iter().map(of_gimbal).collect(),
             Motion::Carried(chain) => {
+                let samples = chain.solve(times);
+                samples.iter().map(|s| JointRow::of_scalars(s.t, &s.positions, &s.rates)).collect()
+            }
+            Motion::TwoAxes(chain) => {
                 let samples = chain.solve(times);
                 samples.iter().map(|s| JointRow::of_scalars(s.t, &s.positions, &s.rates)).collect()
             }

@@ -92,8 +92,10 @@ pub struct Keep {
     pub estimate: bool,
     /// Those of which all samples are kept.
     pub series: Vec<usize>,
-    /// Targets of the plan by which last values, extremes and passages are differentiated.
+    /// Targets of the plan by which last values, extremes, passages and the series in `sloped` are differentiated.
     pub by: Vec<usize>,
+    /// The columns of series that are differentiated, too.
+    pub sloped: Vec<usize>,
 }
 
 impl Keep {
@@ -102,14 +104,27 @@ impl Keep {
         self.finals.len() + 2 * self.extremes.len() + self.passages.len() + usize::from(self.estimate)
     }
 
-    /// How many derivatives are kept of a scenario.
+    /// How many derivatives are kept of a scenario besides those of series.
     pub fn slopes(&self) -> usize {
         (self.numbers() - usize::from(self.estimate)) * self.by.len()
     }
 
+    /// How many derivatives of series are kept of a sample.
+    pub fn series_slopes(&self) -> usize {
+        self.sloped.len() * self.by.len()
+    }
+
     /// How many numbers are kept of a scenario with so many samples.
     pub fn width(&self, samples: usize) -> usize {
-        self.numbers() + self.slopes() + self.series.len() * samples
+        self.numbers() + self.slopes() + (self.series_slopes() + self.series.len()) * samples
+    }
+
+    /// The numbers of a scenario with so many samples apart: those besides series with their derivatives; derivatives
+    /// of series; series. The latter are sample after sample.
+    pub fn apart<'n>(&self, numbers: &'n [f64], samples: usize) -> [&'n [f64]; 3] {
+        let (numbers, rest) = numbers.split_at(self.numbers() + self.slopes());
+        let (slopes, series) = rest.split_at(self.series_slopes() * samples);
+        [numbers, slopes, series]
     }
 }
 

@@ -23,11 +23,16 @@ pub(crate) struct Slopes<'a> {
     extremes: Vec<[Sloped; 2]>,
     /// None before the passage.
     passages: Vec<Option<Vec<f64>>>,
+    /// Derivatives of series, sample after sample.
+    series: Vec<f64>,
+    samples: usize,
 }
 
 impl<'a> Slopes<'a> {
-    pub(crate) fn new(keep: &'a Keep) -> Self {
-        Self { keep, t: f64::NAN, last: Vec::new(), extremes: Vec::new(), passages: Vec::new() }
+    /// For scenarios with so many samples.
+    pub(crate) fn new(keep: &'a Keep, samples: usize) -> Self {
+        let (last, extremes, passages, series) = Default::default();
+        Self { keep, t: f64::NAN, last, extremes, passages, series, samples }
     }
 
     /// Takes a sample: a number for each column.
@@ -65,11 +70,13 @@ impl<'a> Slopes<'a> {
                 None => vec![0.0; now.slopes.len()],
             });
         }
+        self.series.extend(keep.sloped.iter().flat_map(|column| &now[*column].slopes));
         (self.t, self.last) = (t, now);
     }
 
-    /// Appends the derivatives of each kept number by each direction, or NaN for all after a failure, and forgets the
-    /// scenario. Lengths are in units of `scales`, of which there is one for each direction.
+    /// Appends the derivatives of each kept number by each direction, or NaN for all after a failure; those of series,
+    /// as far as there are samples; and forgets the scenario. Slopes that were taken are in units of `1 / scales`, of
+    /// which there is one for each direction.
     pub(crate) fn finish(&mut self, is_whole: bool, scales: &[f64], out: &mut Vec<f64>) {
         let keep = self.keep;
         let end = out.len() + keep.slopes();
@@ -82,6 +89,8 @@ impl<'a> Slopes<'a> {
             self.passages.iter().for_each(|passage| add(passage.as_ref().unwrap_or(&never)));
         }
         out.resize(end, f64::NAN);
+        out.extend(self.series.drain(..).zip(scales.iter().cycle()).map(|(slope, scale)| slope / scale));
+        out.resize(end + keep.series_slopes() * self.samples, f64::NAN);
         self.t = f64::NAN;
         self.last.clear();
     }
@@ -106,9 +115,10 @@ mod tests {
             extremes: vec![0],
             passages: vec![passage(2.0, true), passage(-1.0, false), passage(9.0, true), passage(0.0, true)],
             by: vec![0],
+            sloped: vec![0],
             ..Keep::default()
         };
-        let mut slopes = Slopes::new(&keep);
+        let mut slopes = Slopes::new(&keep, 6);
         let kept = |p: f64| {
             let mut keeper = crate::Keeper::new(&keep, 6);
             (0..6).for_each(|k| keeper.take(f64::from(k), |_| parabola(p, f64::from(k)).value));
@@ -121,6 +131,9 @@ mod tests {
             let mut found = Vec::new();
             slopes.finish(true, &[2.0], &mut found);
             let (above, below) = (kept(1.0 + 1e-5), kept(1.0 - 1e-5));
+            let series = found.split_off(keep.slopes());
+            let expected: Vec<f64> = (0..6).map(|k| parabola(1.0, f64::from(k)).slopes[0] / 2.0).collect();
+            assert_eq!(series, expected);
             assert_eq!(found.len(), keep.slopes());
             for (found, (above, below)) in found.iter().zip(above.iter().zip(&below)) {
                 let expected = (above - below) / 2e-5;
@@ -133,6 +146,8 @@ mod tests {
         slopes.take(0.0, vec![parabola(1.0, 0.0)]);
         let mut found = Vec::new();
         slopes.finish(false, &[1.0], &mut found);
+        let series = found.split_off(keep.slopes());
         assert!(found.len() == keep.slopes() && found.iter().all(|x| x.is_nan()));
+        assert!(series.len() == 6 && series[0] == 0.0 && series[1..].iter().all(|x| x.is_nan()));
     }
 }

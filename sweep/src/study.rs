@@ -38,6 +38,10 @@ pub struct Study {
     pub slopes: Vec<(String, String)>,
     /// Name and unit of each series.
     pub series: Vec<(String, String)>,
+    /// Whether there are series that are kept for themselves, not for quantiles alone.
+    pub has_series: bool,
+    /// Name and no unit of each derivative of a sample of them.
+    pub series_slopes: Vec<(String, String)>,
     /// The series of which quantiles are wanted, by their index; they come first.
     pub quantiles: usize,
 }
@@ -163,6 +167,7 @@ fn page<F: Files>(
     let plan =
         Plan { seed, sampling, targets: varied.targets, axes: varied.axes, draws: varied.draws, repeats };
     check(reader, &whole, &plan, block);
+    let has_series = kept.has_series();
     Ok(Some(Study {
         model,
         plan,
@@ -171,8 +176,10 @@ fn page<F: Files>(
         block: u32::try_from(block).unwrap_or(BLOCK),
         targets: varied.names,
         numbers: kept.numbers,
+        has_series,
         slopes: kept.slopes,
         series: kept.series,
+        series_slopes: kept.series_slopes,
         quantiles: kept.quantiles,
     }))
 }

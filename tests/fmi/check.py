@@ -23,14 +23,16 @@ from fmpy.fmi3 import FMU3Model, FMU3Slave
 from fmpy.validation import validate_fmu
 
 ROOT = Path(__file__).resolve().parents[2]
-# Mechanism, integrator of co-simulation, and what of a hundredth of a second an importer's solver can take at once.
+# Model file, or what `new` makes it of; integrator of co-simulation; what of a hundredth of a second an importer's solver
+# can take at once; parameters and inputs that are set before a run.
 MECHANISMS = [
-    ("models/gyroscope.toml", "dop853", 1.0),
-    ("models/driven-gyroscope.toml", "dop853", 1.0),
-    ("models/four-bar.toml", "dop853", 1.0),
-    ("examples/cart-pendulum/cart-pendulum.toml", "dop853", 1.0),
-    ("examples/arm/arm.toml", "dop853", 1.0),
-    ("models/gyroscope-stiff.toml", "rodas4", 0.01),
+    ("models/gyroscope.toml", "dop853", 1.0, {}),
+    ("models/driven-gyroscope.toml", "dop853", 1.0, {}),
+    ("models/four-bar.toml", "dop853", 1.0, {}),
+    ("cart", "dop853", 1.0, {"stiffness": 55.0, "length": 0.45, "push": 1.5}),
+    ("arm", "dop853", 1.0, {"payload": 0.35, "shoulder_torque": -4.0, "elbow_torque": 0.75}),
+    ("examples/arm/arm.toml", "dop853", 1.0, {"motor": -2.0}),
+    ("models/gyroscope-stiff.toml", "rodas4", 0.01, {}),
 ]
 END, SAMPLE = 1.0, 0.01
 
@@ -41,10 +43,10 @@ def run(*command):
     return done.stdout
 
 
-def reference(gyro, model, folder):
-    """The table of a run of the runtime-assembled model, in maximal coordinates."""
+def reference(gyro, model, settings, folder):
+    """The table of a run of the runtime-assembled model, in maximal coordinates; settings are options with their values."""
     options = "--engine assembled --integrator dop853 --tolerance 1e-11 --budget 100000000".split()
-    run(gyro, "simulate", model, *options, "--t-end", END, "--every", SAMPLE, "--out", folder)
+    run(gyro, "simulate", model, *options, *settings, "--t-end", END, "--every", SAMPLE, "--out", folder)
     (table,) = folder.glob("*.csv")
     with table.open() as lines:
         rows = list(csv.reader(lines))
@@ -179,12 +181,13 @@ def refuses(archive, description, folder):
     unit.freeInstance()
 
 
-def cosimulated(archive, expected, names):
+def cosimulated(archive, values, expected, names):
     """A second importer."""
     structure = ecospy.EcosSimulationStructure()
     structure.add_model("unit", str(archive))
+    structure.add_parameter_set("set", {f"unit::{name}": value for name, value in values.items()})
     with ecospy.EcosSimulation(structure=structure, step_size=SAMPLE) as simulation:
-        simulation.init()
+        simulation.init(parameter_set="set")
         simulation.step(round(END / SAMPLE))
         assert abs(simulation.get_time() - END) < SAMPLE / 2
         worst = 0.0
@@ -196,7 +199,11 @@ def cosimulated(archive, expected, names):
     return worst
 
 
-def check(gyro, model, integrator, share, folder):
+def check(gyro, model, integrator, share, values, folder):
+    if not model.endswith(".toml"):
+        made = folder / f"{model}.toml"
+        run(gyro, "new", model, "--template", model, "--out", made)
+        model = made
     archive = folder / f"{Path(model).stem}.fmu"
     run(gyro, "export", "fmu", model, "--out", archive, "--integrator", integrator)
     content = archive.read_bytes()
@@ -209,7 +216,9 @@ def check(gyro, model, integrator, share, folder):
     compiles(archive, unpacked)
 
     description = fmpy.read_model_description(str(archive))
-    expected = reference(gyro, model, folder / "reference")
+    option = {v.name: "--input" if v.causality == "input" else "--set" for v in description.modelVariables}
+    settings = [word for name, value in values.items() for word in (option[name], f"{name}={value}")]
+    expected = reference(gyro, model, settings, folder / "reference")
     outputs = [v.name for v in description.modelVariables if v.causality == "output"]
     names = [name for name in outputs if name in expected]
     assert len(names) * 2 >= len(outputs), f"{names} of {outputs}"
@@ -217,27 +226,27 @@ def check(gyro, model, integrator, share, folder):
     for kind, every in (("ModelExchange", round(1 / share)), ("CoSimulation", 1)):
         found = fmpy.simulate_fmu(
             str(archive), fmi_type=kind, stop_time=END, output_interval=SAMPLE / every, relative_tolerance=1e-9,
-            output=names,
+            output=names, start_values=values,
         )
         # An event has rows of its own: of each time the last one counts.
         at = np.searchsorted(found["time"], expected["t"] + 1e-9) - 1
         assert np.abs(found["time"][at] - expected["t"]).max() < 1e-9
         found = {name: found[name][at] for name in names}
         figures.append(difference(found, expected, names))
-    figures.append(cosimulated(archive, expected, names))
+    figures.append(cosimulated(archive, values, expected, names))
     figures.append(derivatives(archive, description, str(unpacked)))
     keeps_its_state(archive, description, str(unpacked))
     refuses(archive, description, str(unpacked))
     exchange, steps, second, slopes = figures
-    print(f"{model}: model exchange {exchange:.1e}, co-simulation {steps:.1e}, ecospy {second:.1e}, slopes {slopes:.1e}")
+    print(f"{Path(model).name}: model exchange {exchange:.1e}, co-simulation {steps:.1e}, ecospy {second:.1e}, slopes {slopes:.1e}")
     assert exchange < 1e-5 and steps < 1e-7 and second < 1e-7 and slopes < 1e-6, figures
 
 
 def main():
     gyro = Path(sys.argv[1]).resolve()
-    for model, integrator, share in MECHANISMS:
+    for model, integrator, share, values in MECHANISMS:
         with tempfile.TemporaryDirectory() as folder:
-            check(gyro, model, integrator, share, Path(folder))
+            check(gyro, model, integrator, share, values, Path(folder))
     print("all well")
 
 

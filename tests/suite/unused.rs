@@ -5,8 +5,10 @@ use gyro_codegen::{Effort, Functions};
 use gyro_sim_suite::page;
 
 fn code(name: &str, text: &str) -> String {
-    let model = gyro_model::read(name, text).unwrap();
-    gyro_codegen::generate_by_effort(name, &model, &Functions::of_solvers(), Effort::Quick).unwrap().code
+    let model = gyro_model::read(name, text).expect("it is a model file");
+    gyro_codegen::generate_by_effort(name, &model, &Functions::of_solvers(), Effort::Quick)
+        .expect("it can be generated")
+        .code
 }
 
 /// A page, its first joint and its first body that moves.

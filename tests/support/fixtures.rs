@@ -108,6 +108,7 @@ mechanisms! {
     "spatial-slider-crank" new own::spatial_slider_crank::SpatialSliderCrank,
     "spherical" new own::spherical::Spherical,
     "spinning-top" of_tree shipped::spinning_top::SpinningTop,
+    "stabilised-gimbal" of_tree shipped::stabilised_gimbal::StabilisedGimbal,
     "stewart-platform" new shipped::stewart_platform::StewartPlatform,
     "stops" new own::stops::Stops,
     "tether" new own::tether::Tether,

@@ -75,35 +75,66 @@ impl Drop for Folder {
     }
 }
 
-/// Files that a command reads are there, but those that it makes itself (`gyro new NAME && ...`).
-fn files_are_there(page: &str, command: &[String]) {
+/// Files that a command reads are there, but those that it makes itself (`gyro new NAME && ...`) or that one before
+/// it on the page has made.
+fn files_are_there(page: &str, command: &[String], made: &mut Vec<String>) {
     let writes = command.iter().position(|word| word == "--out").map(|at| at + 1);
+    made.extend(command.windows(2).filter(|pair| pair[0] == "new").map(|pair| format!("{}.toml", pair[1])));
     for (index, word) in command.iter().enumerate().skip(1) {
         let path = word.rsplit(['=', ':']).next().unwrap();
         let is_file = [".toml", ".csv", ".urdf"].iter().any(|end| path.ends_with(end));
-        let is_new = command.windows(2).any(|pair| pair[0] == "new" && path == format!("{}.toml", pair[1]));
-        if is_file && writes != Some(index) && !is_new {
+        if is_file && writes != Some(index) && !made.iter().any(|file| file == path) {
             assert!(root().join(path).exists(), "{page}: `{}`: there is no {path}", command.join(" "));
         }
     }
 }
 
 fn names_a_file(command: &[String]) -> bool {
-    command[3..].first().is_some_and(|word| [".toml", ".urdf"].iter().any(|end| word.ends_with(end)))
+    let place = if command[2] == "export" { 4 } else { 3 };
+    command.get(place).is_some_and(|word| [".toml", ".urdf"].iter().any(|end| word.ends_with(end)))
 }
 
-/// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; nothing of the long
-/// ones but that they exist.
+/// Whether a compiler of WebAssembly is at hand.
+fn compiles_to_wasm() -> bool {
+    ["clang", "wasm-ld"].iter().all(|tool| Command::new(tool).arg("--version").output().is_ok())
+}
+
+/// Rigid stops and friction that sticks are for compiled code.
+fn touches(file: &str) -> bool {
+    fs::read_to_string(root().join(file)).is_ok_and(|page| page.contains("[[contact]]"))
+}
+
+/// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; of the long ones
+/// nothing but that their options are known. What `new` makes is there for the commands after it.
 fn run(command: &[String], folder: &Path) -> Output {
-    let mut args: Vec<String> = command[2..].to_vec();
-    if let Some(at) = args.iter().position(|word| word == "--out") {
-        let name = Path::new(&args[at + 1]).file_name().unwrap().to_owned();
-        args[at + 1] = folder.join("made").join(name).display().to_string();
+    let made = folder.join("made");
+    let elsewhere = |path: &str| made.join(Path::new(path).file_name().unwrap()).display().to_string();
+    let command: Vec<String> = command.iter().take_while(|word| *word != "&&").cloned().collect();
+    let mut args: Vec<String> = command[2..].iter().filter(|word| *word != "--open").cloned().collect();
+    for at in 1..args.len() {
+        let is_written = ["--out", "--svg"].contains(&args[at - 1].as_str());
+        if is_written || args[at].ends_with(".toml") && made.join(&args[at]).exists() {
+            args[at] = elsewhere(&args[at]);
+        }
     }
     let has = |option: &str| command.iter().any(|word| word == option);
     let mut add = |words: &[&str]| args.extend(words.iter().map(|word| (*word).to_owned()));
+    let is_of_wasm = has("--live") || has("wasm");
     match command[2].as_str() {
-        "simulate" if names_a_file(command) && !has("--linearize") => {
+        "new" => {
+            fs::create_dir_all(&made).unwrap();
+            let file = format!("{}.toml", command[3]);
+            let _ = fs::remove_file(made.join(&file));
+            add(&["--out", &elsewhere(&file)]);
+        }
+        "show" | "export" if is_of_wasm && !compiles_to_wasm() => add(&["--help"]),
+        "show" if names_a_file(&command) => {
+            if !has("--out") {
+                add(&["--out", &elsewhere("page.html")]);
+            }
+            add(&["--t-end", "0.01"]);
+        }
+        "simulate" if names_a_file(&command) && !has("--linearize") && !touches(&command[3]) => {
             if !has("--engine") {
                 add(&["--engine", "assembled"]);
             }
@@ -111,9 +142,9 @@ fn run(command: &[String], folder: &Path) -> Output {
             // Only compiled code does joint coordinates.
             args.iter_mut().filter(|word| *word == "joint").for_each(|word| "maximal".clone_into(word));
         }
-        "inspect" if names_a_file(command) && !has("--no-compile") => add(&["--no-compile"]),
-        "import" | "generate" | "inspect" if names_a_file(command) => {}
-        _ => args = vec![command[2].clone(), "--help".to_owned()],
+        "inspect" if names_a_file(&command) && !has("--no-compile") => add(&["--no-compile"]),
+        "import" | "generate" | "inspect" | "check" | "export" if names_a_file(&command) => {}
+        _ => add(&["--help"]),
     }
     Command::new(env!("CARGO_BIN_EXE_xtask")).args(args).current_dir(root()).output().unwrap()
 }
@@ -124,9 +155,10 @@ fn every_command_works_as_it_is_typed() {
     let mut number = 0;
     for (path, page) in pages() {
         let name = path.display().to_string();
+        let mut made = Vec::new();
         for command in commands(&page) {
             let command: Vec<String> = command.into_iter().skip_while(|word| word.contains('=')).collect();
-            files_are_there(&name, &command);
+            files_are_there(&name, &command, &mut made);
             if command.len() > 2 && command[..2] == ["cargo", "xtask"] {
                 let output = run(&command, &folder.0);
                 let said = String::from_utf8_lossy(&output.stderr);

@@ -24,15 +24,33 @@ const SLICE: f64 = 1e-3;
 
 /// Measures a run, for about `budget` but at least once. The first of several is not counted: it warms up.
 ///
+/// A slice is shorter than what a system lets a program run without a break: on a busy machine most slices are whole,
+/// and the median is one of these.
+///
 /// # Errors
 /// That of the run.
-pub fn beside<E>(budget: Duration, mut run: impl FnMut() -> Result<(), E>) -> Result<Measured, E> {
-    let floor = black_box(Floor::paper());
-    let yardstick = || timed(|| floor.second());
+pub fn beside<E>(budget: Duration, run: impl FnMut() -> Result<(), E>) -> Result<Measured, E> {
+    let (floor, began) = (black_box(Floor::paper()), Instant::now());
+    in_turns(budget, || began.elapsed().as_secs_f64(), || floor.second(), run)
+}
+
+/// The same beside any yardstick, by a clock that gives the time in s.
+fn in_turns<E>(
+    budget: Duration,
+    now: impl Fn() -> f64,
+    mut yardstick: impl FnMut(),
+    mut run: impl FnMut() -> Result<(), E>,
+) -> Result<Measured, E> {
+    let timed = |action: &mut dyn FnMut()| {
+        let began = now();
+        action();
+        now() - began
+    };
+    let mut yardstick = || timed(&mut yardstick);
     yardstick();
     let mut failure = None;
     let mut repeated = |times: u64| {
-        timed(|| {
+        timed(&mut || {
             for _ in 0..times {
                 if let Err(error) = run() {
                     failure.get_or_insert(error);
@@ -62,14 +80,6 @@ pub fn beside<E>(budget: Duration, mut run: impl FnMut() -> Result<(), E>) -> Re
     }
 }
 
-/// How long this takes by the clock, s. A slice is shorter than what a system lets a program run without a break: on a
-/// busy machine most slices are whole, and the median is one of these.
-fn timed(action: impl FnOnce()) -> f64 {
-    let began = Instant::now();
-    action();
-    began.elapsed().as_secs_f64()
-}
-
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
@@ -78,20 +88,39 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::cell::Cell;
 
+    /// By a clock that the run and the yardstick move on; both are interrupted for a second now and then.
     #[test]
-    fn twice_the_yardstick_is_longer_than_once() {
-        let floor = black_box(Floor::paper());
-        let second = || {
-            floor.second();
+    fn a_run_is_measured_in_yardsticks() {
+        let (clock, n_calls) = (Cell::new(0.0), Cell::new(0));
+        let pass = |seconds: f64| {
+            n_calls.set(n_calls.get() + 1);
+            clock.set(clock.get() + seconds + if n_calls.get() % 5 == 0 { 1.0 } else { 0.0 });
+        };
+        let yardstick = || pass(0.001);
+        let run = || {
+            pass(0.004);
             Ok::<(), ()>(())
         };
-        let budget = Duration::from_millis(100);
-        let one = beside(budget, second).unwrap();
-        let two = beside(budget, || second().and_then(|()| second())).unwrap();
-        // Twice, give or take what a busy machine does to it.
-        let factor = two.ratio / one.ratio;
-        assert!(factor > 1.3 && factor < 3.0, "{one:?} {two:?}");
+        let measured = in_turns(Duration::from_secs(1), || clock.get(), yardstick, run).unwrap();
+        assert_eq!(measured.runs, TURNS as u64);
+        assert!(
+            (measured.seconds - 0.004).abs() < 1e-12 && (measured.ratio - 4.0).abs() < 1e-9,
+            "{measured:?}"
+        );
+    }
+
+    #[test]
+    fn a_long_run_is_made_once() {
+        let clock = Cell::new(0.0);
+        let run = || {
+            clock.set(clock.get() + 10.0);
+            Ok::<(), ()>(())
+        };
+        let yardstick = || clock.set(clock.get() + 0.5);
+        let measured = in_turns(Duration::from_secs(1), || clock.get(), yardstick, run).unwrap();
+        assert_eq!(measured, Measured { runs: 1, seconds: 10.0, ratio: 20.0 });
     }
 
     #[test]

@@ -21,7 +21,7 @@ pub(super) fn merge(args: &MergeArgs) -> Result<(), Failure> {
     for block in 0..head.blocks() {
         let part = &mut parts[usize::try_from(block % every).unwrap_or(0)];
         let Some(bytes) = part.next()? else { return Err(incomplete(part)) };
-        store.append(&bytes)?;
+        store.append(&bytes, 1)?;
     }
     drop(store);
     let study = study(&args.parts, &head);

@@ -4,7 +4,7 @@
 
 use super::loaded::Loaded;
 use super::program::Way;
-use super::workers::{Answer, Queue, Workers, in_order, lock};
+use super::workers::{Answer, Queue, Records, Workers, in_order, lock};
 use super::{Keep, Sweep, job};
 use crate::args::{Shard, SweepArgs};
 use crate::failure::Failure;
@@ -25,8 +25,8 @@ use std::sync::{Condvar, Mutex};
 /// A rank asks for so many places: a u64. It is answered with a range, two u64; an empty one ends it.
 const ASK: i32 = 1;
 const GIVE: i32 = 2;
-/// A place, u64, and the record of its block.
-const RECORD: i32 = 3;
+/// The first of some places that follow each other and how many they are, two u64, and the records of their blocks.
+const RECORDS: i32 = 3;
 
 /// Runs a study on all ranks; a failure of one ends the job.
 pub(super) fn sweep(loaded: Loaded, args: &SweepArgs, folder: &Path) -> Result<(), Failure> {
@@ -86,8 +86,9 @@ fn hand_out(
             if status.tag() == ASK {
                 idle.push_back((status.source_rank(), word(&message, 0)));
             } else {
-                missing -= 1;
-                return Some(Answer::Ok((word(&message, 0), message[8..].to_vec())));
+                let [first, count] = [0, 8].map(|at| word(&message, at));
+                missing -= count;
+                return Some(Answer::Ok(Records { first, count, bytes: message[16..].to_vec() }));
             }
         }
         None
@@ -130,8 +131,9 @@ fn follow(world: &SimpleCommunicator, loaded: &Loaded, args: &SweepArgs) -> Resu
     };
     let shard = args.shard.unwrap_or(Shard::WHOLE);
     let block = |place| shard.number - 1 + place * shard.of;
-    let send = |place: u64, bytes: Vec<u8>| {
-        first.send_with_tag(&[&place.to_le_bytes()[..], &bytes].concat()[..], RECORD);
+    let send = |records: Records| {
+        let [place, count] = [records.first, records.count].map(u64::to_le_bytes);
+        first.send_with_tag(&[&place[..], &count, &records.bytes].concat()[..], RECORDS);
         true
     };
     workers.work(take, block, send)

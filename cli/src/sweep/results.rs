@@ -63,12 +63,12 @@ fn tables(folder: &Path, loaded: &Loaded, gathered: &mut Gathered) -> Result<Vec
     while let Some(block) = blocks.block()? {
         for (k, numbers, error) in block.rows() {
             source.write(k, &mut values);
-            let (numbers, tracks) = numbers.split_at(loaded.study.numbers.len() + loaded.study.slopes.len());
+            let [numbers, slopes, tracks] = loaded.study.keep.apart(numbers, times.len());
             let written = tables::row(&mut table.file, k, [&values, numbers], error);
             written.map_err(|e| unwritable(&path, "written", &e))?;
             #[cfg(feature = "parquet")]
             parquet.row(k, [&values, numbers], error)?;
-            series.row(k, tracks)?;
+            series.row(k, [tracks, slopes])?;
             gathered.add(k, &values, numbers, error);
             next = k + 1;
         }

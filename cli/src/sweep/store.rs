@@ -156,11 +156,11 @@ impl Store {
         Ok(Self { file: BufWriter::new(file), written, synced: Instant::now(), path })
     }
 
-    /// Appends the next block.
+    /// Appends the records of the next blocks, of which there are so many.
     ///
     /// # Errors
     /// A disk that is full, for example: what is there already is kept.
-    pub(super) fn append(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+    pub(super) fn append(&mut self, bytes: &[u8], count: u64) -> Result<(), Failure> {
         let is_due = self.synced.elapsed() > SYNC_EVERY;
         let written = self.file.write_all(bytes).and_then(|()| self.file.flush());
         let synced = written.and_then(|()| if is_due { self.file.get_ref().sync_data() } else { Ok(()) });
@@ -168,7 +168,7 @@ impl Store {
         if is_due {
             self.synced = Instant::now();
         }
-        self.written += 1;
+        self.written += count;
         Ok(())
     }
 }
@@ -275,13 +275,13 @@ mod tests {
         };
         let block = |first| Block { first, count: 1, numbers: vec![0.5], errors: Vec::new() }.encode();
         let mut store = Store::create(&folder, &head).unwrap();
-        store.append(&block(0)).unwrap();
+        store.append(&block(0), 1).unwrap();
         let refused = Store::resume(&folder, &head).unwrap_err();
         assert!(refused.words().contains("another sweep writes to"), "{refused:?}");
         drop(store);
         let mut store = Store::resume(&folder, &head).unwrap();
         assert_eq!(store.written, 1);
-        store.append(&block(1)).unwrap();
+        store.append(&block(1), 1).unwrap();
         drop(store);
         assert_eq!(Store::resume(&folder, &head).unwrap().written, 2);
         std::fs::remove_dir_all(&folder).unwrap();

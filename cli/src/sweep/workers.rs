@@ -79,12 +79,22 @@ impl Queue {
 /// The queue, and who waits for blocks to be written.
 pub(super) type Shared = (Mutex<Queue>, Condvar);
 
-/// Blocks by their place in the order, and what came of them.
-pub(super) type Answer = Result<(u64, Vec<u8>), Failure>;
+/// The records of blocks at places that follow each other.
+#[derive(Debug)]
+pub(super) struct Records {
+    /// The first place.
+    pub(super) first: u64,
+    /// How many there are.
+    pub(super) count: u64,
+    /// One after the other.
+    pub(super) bytes: Vec<u8>,
+}
+
+pub(super) type Answer = Result<Records, Failure>;
 
 impl Workers<'_> {
-    /// Runs the blocks at these places of an order, of which `block` says the numbers; hands their records to `keep`
-    /// one after the other.
+    /// Runs the blocks at these places of an order, of which `block` says the numbers; hands their records to `keep` in
+    /// this order.
     ///
     /// # Errors
     /// Of a program, or of `keep`.
@@ -92,7 +102,7 @@ impl Workers<'_> {
         &self,
         places: Range<u64>,
         block: impl Fn(u64) -> u64 + Sync,
-        mut keep: impl FnMut(Vec<u8>) -> Result<(), Failure>,
+        mut keep: impl FnMut(Records) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let threads = (self.threads.get() as u64).min(places.end - places.start);
         let shared = (Mutex::new(Queue::new(&places, threads)), Condvar::new());
@@ -101,7 +111,7 @@ impl Workers<'_> {
             for _ in 0..threads {
                 let (sender, shared, block) = (sender.clone(), &shared, &block);
                 scope.spawn(move || {
-                    let send = |place, bytes| sender.send(Ok((place, bytes))).is_ok();
+                    let send = |records| sender.send(Ok(records)).is_ok();
                     if let Err(failure) = self.work(|at_once| take(shared, at_once), block, send) {
                         // Nobody listens any more after another failure.
                         let _ = sender.send(Err(failure));
@@ -125,7 +135,7 @@ impl Workers<'_> {
         &self,
         mut take: impl FnMut(u64) -> Option<Range<u64>>,
         block: impl Fn(u64) -> u64,
-        mut send: impl FnMut(u64, Vec<u8>) -> bool,
+        mut send: impl FnMut(Records) -> bool,
     ) -> Result<(), Failure> {
         let mut worker = Worker::open(self.program, self.job)?;
         let mut source = Source::new(&self.job.plan);
@@ -135,8 +145,11 @@ impl Workers<'_> {
             let blocks: Vec<u64> = places.clone().map(&block).collect();
             let (starts, slopes) = self.starts(&blocks, &mut source);
             worker.ask(&Unit { blocks, starts, slopes })?;
-            for place in places.clone() {
-                if !send(place, worker.hear()?) {
+            let mut first = places.start;
+            while first < places.end {
+                let records = worker.hear(first, places.end)?;
+                first += records.count;
+                if !send(records) {
                     return Ok(());
                 }
             }
@@ -192,16 +205,16 @@ pub(super) fn lock(queue: &Mutex<Queue>) -> std::sync::MutexGuard<'_, Queue> {
 pub(super) fn in_order(
     (queue, written): &Shared,
     answers: impl Iterator<Item = Answer>,
-    mut keep: impl FnMut(Vec<u8>) -> Result<(), Failure>,
+    mut keep: impl FnMut(Records) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let mut waiting = BTreeMap::new();
     let mut next = lock(queue).written;
     for answer in answers {
-        let (place, bytes) = answer?;
-        waiting.insert(place, bytes);
-        while let Some(bytes) = waiting.remove(&next) {
-            keep(bytes)?;
-            next += 1;
+        let records = answer?;
+        waiting.insert(records.first, records);
+        while let Some(records) = waiting.remove(&next) {
+            next += records.count;
+            keep(records)?;
         }
         lock(queue).written = next;
         written.notify_all();
@@ -243,11 +256,20 @@ impl Worker {
         self.child.wait().map(|_| ()).map_err(|error| self.ended(&error.to_string()))
     }
 
-    fn hear(&mut self) -> Result<Vec<u8>, Failure> {
-        match record::next(&mut self.output) {
-            Ok(Some(bytes)) => Ok(bytes),
-            Ok(None) => Err(self.ended("no answer")),
-            Err(error) => Err(self.ended(&error.to_string())),
+    /// The record of a place, and of those before `end` that have come with it: to wake who writes them takes as long
+    /// as several scenarios.
+    fn hear(&mut self, first: u64, end: u64) -> Result<Records, Failure> {
+        let mut records = Records { first, count: 0, bytes: Vec::new() };
+        loop {
+            match record::next(&mut self.output) {
+                Ok(Some(bytes)) => records.bytes.extend(bytes),
+                Ok(None) => return Err(self.ended("no answer")),
+                Err(error) => return Err(self.ended(&error.to_string())),
+            }
+            records.count += 1;
+            if records.first + records.count == end || self.output.buffer().is_empty() {
+                return Ok(records);
+            }
         }
     }
 

@@ -1,7 +1,7 @@
 //! Rigid stops and friction that sticks in model files: sledges against their motion piece by piece, chains against the
 //! ledger of their energy.
 
-use crate::support::{Folder, json, refused, simulate};
+use crate::support::{Folder, json, model, refused, simulate};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
@@ -246,6 +246,28 @@ fn random_chains_keep_the_ledger_of_their_energy_and_their_stops() {
         }
     }
     assert!(n_events > 100, "{n_events}");
+}
+
+/// Its bearings stick where the vehicle turns back, and slip in between; a stop is hit when the vehicle rolls far.
+#[test]
+fn the_stabilised_gimbal_sticks_slips_and_hits_its_stop() {
+    let folder = Folder::new("gimbal-contacts");
+    let page = model("stabilised-gimbal.toml");
+    let how = ["--engine", "jit", "--coordinates", "joint", "--integrator", "dop853", "--tolerance", "1e-9"];
+    let run = |extra: &[&str]| json(&folder, &[&[&page[..]], &how[..], extra].concat());
+    let count = |run: &Value, bearing: &str, what: &str| {
+        listed(run, bearing).iter().filter(|(_, found, _)| found.starts_with(what)).count()
+    };
+    let (calm, rough) = (run(&[]), run(&["--set", "roll=0.6"]));
+    for run in [&calm, &rough] {
+        for bearing in ["pan_bearing", "tilt_bearing"] {
+            let counts = ["sticks", "slips"].map(|what| count(run, bearing, what));
+            assert!(counts.iter().all(|count| *count >= 2), "{bearing}: {counts:?}");
+        }
+        assert!(run["energy_drift"].as_f64().unwrap() < 1e-8, "{}", run["energy_drift"]);
+    }
+    assert_eq!(count(&calm, "tilt_bearing", "hits"), 0);
+    assert!(count(&rough, "tilt_bearing", "hits upper") > 0, "{}", rough["events"]);
 }
 
 #[test]

@@ -28,21 +28,21 @@ const NONE: Tally = Tally { least: u32::MAX, most: 0, sum: 0, number: 0 };
 
 /// The instructions of each kind of work.
 #[derive(Debug)]
-struct Counter {
+pub(crate) struct Counter {
     /// What it takes to time nothing.
     nothing: u32,
     tallies: [Tally; Work::ALL.len()],
 }
 
 impl Counter {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let mut counter = Self { nothing: 0, tallies: [NONE; Work::ALL.len()] };
         let _ = counted(|| ());
         counter.nothing = counted(|| ()).1;
         counter
     }
 
-    fn print(&self, precision: &str, name: &str) {
+    pub(crate) fn print(&self, precision: &str, name: &str) {
         for (work, tally) in Work::ALL.iter().zip(&self.tallies) {
             let mean = tally.sum.checked_div(u64::from(tally.number));
             let Some(mean) = mean else { continue };
@@ -85,11 +85,8 @@ fn counted<R>(run: impl FnOnce() -> R) -> (R, u32) {
 /// Measures everything in one precision.
 pub fn run<T: Real>() -> ! {
     panic::fault();
-    if let Some(peripherals) = Peripherals::take() {
-        start_clock(peripherals.SYST);
-    }
+    start();
     let precision = if size_of::<T>() == 4 { "f32" } else { "f64" };
-    check_the_clock();
     for (name, run) in measured::<T, Counter>() {
         let mut counter = Counter::new();
         if run(&mut counter).is_err() {
@@ -101,6 +98,14 @@ pub fn run<T: Real>() -> ! {
     }
     print::line("end");
     board::exit(true)
+}
+
+/// Starts the clock and checks it.
+pub(crate) fn start() {
+    if let Some(peripherals) = Peripherals::take() {
+        start_clock(peripherals.SYST);
+    }
+    check_the_clock();
 }
 
 fn start_clock(mut clock: SYST) {

@@ -5,3 +5,4 @@
 include!("../generated/chain.rs");
 include!("../generated/gimbal.rs");
 include!("../generated/gyroscope_combined_offsets.rs");
+include!("../generated/stabilised_gimbal.rs");

@@ -163,3 +163,18 @@ const char *gyro_status_text(gyro_status status)
     }
     return "unknown";
 }
+
+size_t gyro_solver_bytes(void)
+{
+    return sizeof(gyro_solver);
+}
+
+gyro_real gyro_solver_time(const gyro_solver *s)
+{
+    return s->t;
+}
+
+const gyro_real *gyro_solver_state(const gyro_solver *s)
+{
+    return s->y;
+}

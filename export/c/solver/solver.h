@@ -109,3 +109,8 @@ void gyro_solver_changed(gyro_solver *s);
 
 /* Sets the state, which the solver goes on from. */
 void gyro_solver_set_state(gyro_solver *s, const gyro_real *x);
+
+/* For callers that cannot read this header: the bytes of a solver, its time, and its state (GYRO_N_JOINTS numbers). */
+size_t gyro_solver_bytes(void);
+gyro_real gyro_solver_time(const gyro_solver *s);
+const gyro_real *gyro_solver_state(const gyro_solver *s);

@@ -1,9 +1,4 @@
 
-EXPORT("solver_size") size_t gyro_wasm_solver_size(void)
-{
-    return sizeof(gyro_solver);
-}
-
 EXPORT("solver_control") void gyro_wasm_control(gyro_solver *s, double relative, double absolute, double first_step,
     double smallest_step, double largest_step, double budget, uint32_t correct_every)
 {
@@ -15,16 +10,6 @@ EXPORT("solver_control") void gyro_wasm_control(gyro_solver *s, double relative,
     control.budget = (uint64_t)budget;
     control.correct_every = correct_every;
     gyro_solver_set_control(s, &control);
-}
-
-EXPORT("solver_time") gyro_real gyro_wasm_time(const gyro_solver *s)
-{
-    return s->t;
-}
-
-EXPORT("solver_state") const gyro_real *gyro_wasm_state(const gyro_solver *s)
-{
-    return s->y;
 }
 
 EXPORT("solver_statistic") double gyro_wasm_statistic(const gyro_solver *s, int which)

@@ -1,7 +1,7 @@
 //! Equations of motion with contacts in their phases.
 
 use super::loads::{Acting, Growth, Jam, Loads, size};
-use super::small::solve;
+use super::small::{at, set, solve};
 use super::{Contact, Phase};
 use crate::{Clearance, Correction, Error, Ode, Real};
 use core::array::from_fn;
@@ -13,6 +13,11 @@ use core::ops::Range;
 pub trait Forced<M = ()>: Ode<M> {
     /// Where the rates stand in the state.
     fn rates(&self, model: &M) -> Range<usize>;
+    /// Where the work of all forces stands in the state, those of contacts and of what is driven included; `None` where
+    /// it is not counted. An impact adds what it makes drivers do.
+    fn work(&self, _model: &M) -> Option<usize> {
+        None
+    }
     /// Writes `f(t, y)` under these forces, one for each contact, besides all else that acts: N along a length, N m
     /// along an angle.
     fn forced(
@@ -61,6 +66,11 @@ pub(super) struct Local<T, const N: usize> {
 pub(super) const LARGE: f64 = 1_099_511_627_776.0;
 
 impl<D, T: Real, const N: usize> Contacts<D, T, N> {
+    pub(super) fn new(dynamics: D, contacts: [Contact<T>; N]) -> Self {
+        let phases = [Phase::Free; N];
+        Self { dynamics, contacts, phases, largest: T::constant(0.0), jam: Cell::new(None) }
+    }
+
     /// The forces of friction on what moves.
     pub(super) fn kinetic_forces(&self) -> [T; N] {
         from_fn(|k| match self.phases[k] {
@@ -85,14 +95,14 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         let mut forces = [zero; N];
         self.dynamics.forced(model, t, y, &forces, scratch);
         let rates = self.contacts.map(|contact| contact.rate);
-        let bias = rates.map(|rate| scratch.as_ref()[rate]);
+        let bias = rates.map(|rate| at(scratch.as_ref(), rate));
         let mut compliance = [[zero; N]; N];
         for k in (0..N).filter(|k| chosen[*k]) {
             forces[k] = T::constant(LARGE);
             self.dynamics.forced(model, t, y, &forces, scratch);
             forces[k] = zero;
             for (i, rate) in rates.into_iter().enumerate() {
-                compliance[i][k] = (scratch.as_ref()[rate] - bias[i]) / T::constant(LARGE);
+                compliance[i][k] = (at(scratch.as_ref(), rate) - bias[i]) / T::constant(LARGE);
             }
         }
         Local { bias, compliance }
@@ -221,8 +231,8 @@ where
         }
         for (contact, phase) in self.contacts.iter().zip(self.phases) {
             if phase.is_held() {
-                let dy = dy.as_mut();
-                (dy[contact.coordinate], dy[contact.rate]) = (T::constant(0.0), T::constant(0.0));
+                set(dy.as_mut(), contact.coordinate, T::constant(0.0));
+                set(dy.as_mut(), contact.rate, T::constant(0.0));
             }
         }
     }

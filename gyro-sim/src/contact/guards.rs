@@ -2,6 +2,7 @@
 
 use super::equations::{Contacts, Forced, bounds};
 use super::loads::Acting;
+use super::small::at;
 use super::{Contact, Phase};
 use crate::events::root;
 use crate::{Error, Real};
@@ -35,7 +36,7 @@ where
     let Acting { forces, levels, .. } = equations.forces(model, (t, y), scratch);
     let mut guards = [[largest; N]; 3];
     for (k, contact) in equations.contacts.iter().enumerate() {
-        let (x, rate) = (y.as_ref()[contact.coordinate], y.as_ref()[contact.rate]);
+        let (x, rate) = (at(y.as_ref(), contact.coordinate), at(y.as_ref(), contact.rate));
         let phase = equations.phases[k];
         let (value, [low, high]) =
             if phase.is_held() { (forces[k], bounds(levels[k], phase)) } else { (x, contact.ends) };

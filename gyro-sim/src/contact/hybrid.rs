@@ -2,56 +2,26 @@
 
 use super::equations::{Contacts, Forced, Kept};
 use super::guards::{Guards, guards, noise, passed};
+use super::settle::{Change, Ledger, Next, Record};
 use super::{Contact, Phase};
 use crate::contract::Storage;
 use crate::events::{Found, first_falling};
 use crate::integrate::Method;
 use crate::solver::Mark;
 use crate::{Control, Correction, Error, Real, Solver, Statistics, Uncorrected};
-use core::cell::Cell;
-
-/// What contacts have done so far.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Record<T> {
-    /// Stops that were hit.
-    pub impacts: u64,
-    /// Coordinates that came to rest on a stop because rebounds had become too slow: see the
-    /// [module](super#what-is-solved-when-phases-change).
-    pub settled: u64,
-    /// Coordinates that friction has caught.
-    pub caught: u64,
-    /// Coordinates that were let go by stops, or by friction.
-    pub released: u64,
-    /// What impacts have taken of the kinetic energy, J.
-    pub lost: T,
-}
 
 /// A motion with contacts, by any method that is explicit.
 #[derive(Clone, Debug)]
 pub struct Hybrid<D, S, T, A, C, const N: usize> {
-    pub(super) solver: Solver<Contacts<D, T, N>, S, T, A, Kept<C>>,
+    solver: Solver<Contacts<D, T, N>, S, T, A, Kept<C>>,
     mark: Mark<S, T>,
-    pub(super) scratch: [S; 2],
-    /// The fastest impact on each contact.
-    pub(super) fastest: [T; N],
-    pub(super) record: Record<T>,
+    scratch: [S; 2],
+    ledger: Ledger<T, N>,
     is_begun: bool,
     /// What the last step has ended at, and its length before it was cut short.
     pending: Option<Pending<T>>,
-    pub(super) changes: [Change<T>; N],
-    /// How many events have come without a step between them.
-    pub(super) stalled: u32,
     /// Why there is no way on from here.
-    pub(super) failure: Option<Error>,
-}
-
-/// What a contact has done at an event.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Change<T> {
-    /// The rates before and after an impact on a stop.
-    pub hit: Option<[T; 2]>,
-    /// The phases before and after.
-    pub phases: [Phase; 2],
+    failure: Option<Error>,
 }
 
 /// What is left to be decided at the end of a step.
@@ -67,14 +37,6 @@ enum Pending<T> {
 const MOST_STALLED: u32 = 64;
 /// The end of a step is brought to an event by so many further steps at most.
 const POLISHES: u32 = 3;
-
-/// An event: when, as a fraction of the step, and which guard, by kind and contact.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Next<T> {
-    pub(super) theta: T,
-    pub(super) kind: usize,
-    pub(super) contact: usize,
-}
 
 impl<D, S: Storage<T>, T: Real, A, const N: usize> Hybrid<D, S, T, A, Uncorrected, N> {
     /// A motion that starts at `y` at time `t`, without corrections.
@@ -93,19 +55,19 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         t: T,
         y: &S,
     ) -> Self {
-        let zero = T::constant(0.0);
-        let equations =
-            Contacts { dynamics, contacts, phases: [Phase::Free; N], largest: zero, jam: Cell::new(None) };
         Self {
-            solver: Solver::with_correction(equations, method, Kept(correction), t, y),
+            solver: Solver::with_correction(
+                Contacts::new(dynamics, contacts),
+                method,
+                Kept(correction),
+                t,
+                y,
+            ),
             mark: Mark::new(t, y),
             scratch: [y.clone(), y.clone()],
-            fastest: [zero; N],
-            record: Record { impacts: 0, settled: 0, caught: 0, released: 0, lost: zero },
+            ledger: Ledger::new(),
             is_begun: false,
             pending: None,
-            changes: [Change { hit: None, phases: [Phase::Free; 2] }; N],
-            stalled: 0,
             failure: None,
         }
     }
@@ -134,7 +96,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
 
     /// What contacts have done so far.
     pub fn record(&self) -> &Record<T> {
-        &self.record
+        &self.ledger.record
     }
 
     /// Statistics of the steps so far; those that an event cut short count as rejected.
@@ -144,7 +106,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
 
     /// What each contact has done at the last event, or when it was last decided which contacts hold.
     pub fn changes(&self) -> &[Change<T>; N] {
-        &self.changes
+        &self.ledger.changes
     }
 
     /// The correction.
@@ -247,11 +209,11 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         self.pin();
         let h = self.solver.last_step();
         let Some(next) = self.find(model)? else {
-            self.stalled = 0;
+            self.ledger.stalled = 0;
             return Ok(false);
         };
-        self.stalled = if next.theta > T::constant(0.0) { 0 } else { self.stalled + 1 };
-        if self.stalled > MOST_STALLED {
+        self.ledger.stalled = if next.theta > T::constant(0.0) { 0 } else { self.ledger.stalled + 1 };
+        if self.ledger.stalled > MOST_STALLED {
             return Err(Error::StepTooShort { t: self.mark.time().to_f64(), step: 0.0, index: 0 });
         }
         self.end_at(model, h, &next)?;
@@ -302,10 +264,14 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         C: Correction<D, M>,
     {
         self.begin(model)?;
+        self.ledger.begin(&self.solver.dynamics().contacts, self.solver.state().as_ref());
         self.solver.step(model, h).map_err(|error| self.reason(error))?;
         self.pin();
         let guards = self.guards(model);
         let is_passed = guards.as_ref().iter().any(|guard| *guard < T::constant(0.0));
+        if !is_passed {
+            self.ledger.pass();
+        }
         self.pending = is_passed.then_some(Pending::Step);
         Ok(())
     }
@@ -383,7 +349,19 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         }
     }
 
-    pub(super) fn guards<M>(&mut self, model: &M) -> Guards<T, N>
+    /// Decides what happens at the end of the last step.
+    fn settle<M>(&mut self, model: &M, next: Option<(&Next<T>, T)>)
+    where
+        D: Forced<M, Scalar = T, State = S>,
+    {
+        let (t, mut y) = (self.solver.time(), self.solver.state().clone());
+        let equations = self.solver.dynamics_mut();
+        self.failure = self.ledger.settle(equations, (model, t), &mut y, next, &mut self.scratch).err();
+        self.solver.set_state(&y);
+        self.solver.system_has_changed();
+    }
+
+    fn guards<M>(&mut self, model: &M) -> Guards<T, N>
     where
         D: Forced<M, Scalar = T, State = S>,
     {

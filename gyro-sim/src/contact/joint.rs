@@ -28,6 +28,11 @@ impl<M: JointSpace + Clone, const N: usize> Forced<M> for JointInputs<N> {
         n..n + layout.n_rates()
     }
 
+    /// Behind the rates, where the model counts it.
+    fn work(&self, model: &M) -> Option<usize> {
+        Some(Forced::<M>::rates(self, model).end)
+    }
+
     fn forced(&self, model: &M, t: M::Scalar, y: &M::Joints, forces: &[M::Scalar], dy: &mut M::Joints) {
         pushed(model, &self.inputs, forces).joint_derivative(t, y, dy);
     }
@@ -57,6 +62,10 @@ impl<M: JointSpace + Clone, const N: usize> Forced<M> for LoadedJointInputs<N> {
 
     fn rates(&self, model: &M) -> Range<usize> {
         JointInputs { inputs: self.inputs }.rates(model)
+    }
+
+    fn work(&self, model: &M) -> Option<usize> {
+        JointInputs { inputs: self.inputs }.work(model)
     }
 
     fn forced(&self, model: &M, t: M::Scalar, y: &M::Joints, forces: &[M::Scalar], dy: &mut M::Joints) {

@@ -72,9 +72,11 @@
 //! [`Error::Jammed`](crate::Error::Jammed), and so it does where no combination of phases is consistent.
 //!
 //! # Order under steps of fixed length
-//! [`Hybrid::step`] decides at the step's end: coordinates beyond a stop are set back to it and hit it; rates that have
-//! changed their sign under friction are set to zero; forces beyond their bounds let go. Each is of order one in the
-//! step.
+//! [`Hybrid::step`], and [`Stepped`] for small machines, decide at the step's end: coordinates beyond a stop are set
+//! back to it and hit it; rates that have changed their sign under friction are set to zero; forces beyond their
+//! bounds let go. Each is of order one in the step. What rebounds is the lesser of the rates of approach at the
+//! beginning and the end of the step: a stop that is found late gives no energy, and flights shorter than a step are
+//! none, so that what bounces comes to rest.
 
 mod equations;
 mod guards;
@@ -84,10 +86,13 @@ mod loads;
 mod resolve;
 mod settle;
 mod small;
+mod stepped;
 
 pub use equations::{Contacts, Forced, Kept};
-pub use hybrid::{Change, Hybrid, Record};
+pub use hybrid::Hybrid;
 pub use joint::{JointInputs, LoadedJointInputs};
+pub use settle::{Change, Record};
+pub use stepped::Stepped;
 
 use crate::Real;
 
@@ -106,7 +111,8 @@ pub struct Contact<T> {
 }
 
 impl<T: Real> Contact<T> {
-    /// Nothing yet, along the coordinate that has this index in the state, and its rate that one.
+    /// Nothing yet, along the coordinate that has this index in the state, and its rate that one. What has no such
+    /// index is zero, and stays so.
     pub fn new(coordinate: usize, rate: usize) -> Self {
         let (zero, infinite) = (T::constant(0.0), T::constant(f64::INFINITY));
         Self {

@@ -2,7 +2,7 @@
 
 use super::equations::{Contacts, Forced, LARGE, Local, bounds};
 use super::loads::{Acting, Jam, Loads};
-use super::small::solve;
+use super::small::{at, not_below_rounding, solve};
 use super::{Contact, Phase};
 use crate::{Error, Real};
 
@@ -53,6 +53,7 @@ fn by_newton<T: Real, const N: usize>(
     let target = |k: usize| hits[k].map_or(zero, |hit| -hit.restitution * rates[k]);
     let right = core::array::from_fn(|k| target(k) - rates[k]);
     let scale = rates.iter().fold(zero, |most, rate| if rate.abs() > most { rate.abs() } else { most });
+    let [rounding, unmet] = [ROUNDING, UNMET].map(not_below_rounding::<T>);
     let mut best: Option<(T, [T; N], [T; N])> = None;
     let n = hits.iter().flatten().count();
     for combination in 0..1_u32 << n {
@@ -67,8 +68,8 @@ fn by_newton<T: Real, const N: usize>(
             compliance[i].iter().zip(&impulses).fold(rates[i], |sum, (w, impulse)| sum + *w * *impulse)
         });
         let mut worst = zero;
-        for (k, hit) in hits.iter().enumerate() {
-            let Some(hit) = hit else { continue };
+        for k in 0..N {
+            let Some(hit) = hits[k] else { continue };
             let pull = -hit.outward * impulses[k] * compliance[k][k];
             let short = hit.outward * (target(k) - after[k]);
             for violation in [pull, short] {
@@ -77,16 +78,16 @@ fn by_newton<T: Real, const N: usize>(
         }
         if best.is_none_or(|(least, ..)| worst < least) {
             // What the stops determine is exactly that.
-            let is_met = |k: usize| (after[k] - target(k)).abs() <= T::constant(ROUNDING) * scale;
+            let is_met = |k: usize| (after[k] - target(k)).abs() <= rounding * scale;
             let after = core::array::from_fn(|k| if active[k] && is_met(k) { target(k) } else { after[k] });
             best = Some((worst, impulses, after));
         }
-        if worst <= T::constant(ROUNDING) * scale {
+        if worst <= rounding * scale {
             break;
         }
     }
     let (worst, impulses, after) = best.unwrap_or((zero, [zero; N], *rates));
-    (worst <= T::constant(UNMET) * scale, (impulses, after))
+    (worst <= unmet * scale, (impulses, after))
 }
 
 /// What a coordinate at rest may do, in the order in which it is tried.
@@ -124,7 +125,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         let values = y.as_ref();
         let options: [Options; N] = core::array::from_fn(|k| {
             let contact = &self.contacts[k];
-            let (x, rate) = (values[contact.coordinate], values[contact.rate]);
+            let (x, rate) = (at(values, contact.coordinate), at(values, contact.rate));
             let is_stopped = x <= contact.ends[0] || x >= contact.ends[1];
             if rate == zero && (contact.rubs() || is_stopped) {
                 return options(contact, x, reached[k]);
@@ -145,12 +146,15 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         let loads = self.loads(model, (t, y), &acting);
         let scale = self.scale(&local, loads.as_ref());
         self.largest = if scale > self.largest { scale } else { self.largest };
-        let scale = self.largest;
+        let (scale, [rounding, unmet]) = (self.largest, [ROUNDING, UNMET].map(not_below_rounding::<T>));
         let mut best: Option<(T, [Phase; N])> = None;
         let mut jam = None;
         let mut choice = [0; N];
         loop {
-            self.phases = core::array::from_fn(|k| options[k].0[choice[k]]);
+            self.phases = core::array::from_fn(|k| {
+                let ([first, ..], _) = options[k];
+                options[k].0.get(choice[k]).copied().unwrap_or(first)
+            });
             let acting = self.acting(&local, loads.as_ref());
             jam = jam.or(acting.jam);
             let violation = match acting.jam {
@@ -160,14 +164,14 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             if best.is_none_or(|(least, _)| violation < least) {
                 best = Some((violation, self.phases));
             }
-            let is_consistent = violation <= T::constant(ROUNDING) * scale;
+            let is_consistent = violation <= rounding * scale;
             if is_consistent || !next(&mut choice, &options.map(|(_, n)| n)) {
                 break;
             }
         }
         let (violation, phases) = best.unwrap_or((zero, self.phases));
         self.phases = phases;
-        if violation <= T::constant(UNMET) * scale {
+        if violation <= unmet * scale {
             return Ok(());
         }
         let first = options.iter().position(|(_, n)| *n > 1).unwrap_or(0);
@@ -176,8 +180,8 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
 
     /// Friction that may jam, or phases none of which are consistent, as an error.
     pub(super) fn jammed(&self, t: T, jam: &Jam) -> Error {
-        let index = u16::try_from(self.contacts[jam.contact].coordinate).unwrap_or(u16::MAX);
-        Error::Jammed { t: t.to_f64(), index, gain: jam.gain }
+        let index = self.contacts.get(jam.contact).and_then(|contact| u16::try_from(contact.coordinate).ok());
+        Error::Jammed { t: t.to_f64(), index: index.unwrap_or(u16::MAX), gain: jam.gain }
     }
 
     /// The size of the accelerations that are compared.
@@ -204,7 +208,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         for k in (0..N).filter(|k| options[*k].1 > 1) {
             let contact = &self.contacts[k];
             let [low, high] = bounds(levels[k], self.phases[k]);
-            let is_at_upper = values[contact.coordinate] >= contact.ends[1];
+            let is_at_upper = at(values, contact.coordinate) >= contact.ends[1];
             let violation = match self.phases[k] {
                 phase if phase.is_held() => {
                     // Where the others determine a coordinate's acceleration, as in a loop's dead centre, its own
@@ -223,7 +227,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         worst
     }
 
-    /// Adds what an impulse along a contact changes of all rates.
+    /// Adds what an impulse along a contact changes of all rates, and the work that drivers do meanwhile.
     pub(super) fn push<M>(
         &self,
         model: &M,
@@ -244,9 +248,18 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             self.dynamics.forced(model, t, &before, &forces, pushed);
             forces[k] = zero;
             let part = impulses[k] / T::constant(LARGE);
-            for i in self.dynamics.rates(model) {
-                let change = pushed.as_ref()[i] - base.as_ref()[i];
-                y.as_mut()[i] = T::fused(change, part, y.as_ref()[i]);
+            let own = self.dynamics.rates(model);
+            let changes = pushed.as_ref().iter().zip(base.as_ref()).map(|(pushed, base)| *pushed - *base);
+            for (y, change) in y.as_mut().iter_mut().zip(changes).take(own.end).skip(own.start) {
+                *y = T::fused(change, part, *y);
+            }
+            if let Some(place) = self.dynamics.work(model)
+                && let Some(work) = y.as_mut().get_mut(place)
+            {
+                // Less the power of the force itself: that is what the impact takes.
+                let own = T::constant(LARGE) * at(before.as_ref(), self.contacts[k].rate);
+                let change = at(pushed.as_ref(), place) - at(base.as_ref(), place) - own;
+                *work = T::fused(change, part, *work);
             }
         }
     }

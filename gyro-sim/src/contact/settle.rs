@@ -1,32 +1,111 @@
 //! What happens at the end of a step: impacts, rest, sticking, letting go.
 
 use super::equations::{Contacts, Forced};
-use super::guards::Guards;
-use super::hybrid::{Change, Hybrid, Next};
+use super::guards::{Guards, guards};
 use super::resolve::{Hit, impulses, work};
+use super::small::{at, set};
 use super::{Contact, Phase};
-use crate::Real;
-use crate::contract::Storage;
+use crate::{Error, Real};
 
 /// A rebound slower than this part of the fastest impact is none.
 const SLOWEST: f64 = 1e-12;
 
-impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
-    /// Impacts, rates that friction has brought to zero, and the phases after them.
-    pub(super) fn settle<M>(&mut self, model: &M, next: Option<(&Next<T>, T)>)
+/// What contacts have done so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record<T> {
+    /// Stops that were hit.
+    pub impacts: u64,
+    /// Coordinates that came to rest on a stop because rebounds had become too slow: see the
+    /// [module](super#what-is-solved-when-phases-change).
+    pub settled: u64,
+    /// Coordinates that friction has caught.
+    pub caught: u64,
+    /// Coordinates that were let go by stops, or by friction.
+    pub released: u64,
+    /// What impacts have taken of the kinetic energy, J.
+    pub lost: T,
+}
+
+/// What a contact has done at an event.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change<T> {
+    /// The rates before and after an impact on a stop.
+    pub hit: Option<[T; 2]>,
+    /// The phases before and after.
+    pub phases: [Phase; 2],
+}
+
+/// An event: when, as a fraction of the step, and which guard, by kind and contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Next<T> {
+    pub(super) theta: T,
+    pub(super) kind: usize,
+    pub(super) contact: usize,
+}
+
+/// What contacts have done, as far as it says what they do next.
+#[derive(Clone, Debug)]
+pub(super) struct Ledger<T, const N: usize> {
+    /// The fastest impact on each contact.
+    fastest: [T; N],
+    /// The rates at the beginning of a step of fixed length whose end is to be decided.
+    began: Option<[T; N]>,
+    pub(super) record: Record<T>,
+    /// At the last event.
+    pub(super) changes: [Change<T>; N],
+    /// How many events have come without a step between them.
+    pub(super) stalled: u32,
+}
+
+/// A stop that is hit, rested on or touched, and whether it is the upper one.
+type Touched<T> = Option<(Hit<T>, bool)>;
+
+impl<T: Real, const N: usize> Ledger<T, N> {
+    pub(super) fn new() -> Self {
+        let zero = T::constant(0.0);
+        Self {
+            fastest: [zero; N],
+            began: None,
+            record: Record { impacts: 0, settled: 0, caught: 0, released: 0, lost: zero },
+            changes: [Change { hit: None, phases: [Phase::Free; 2] }; N],
+            stalled: 0,
+        }
+    }
+
+    /// A step of fixed length begins.
+    pub(super) fn begin(&mut self, contacts: &[Contact<T>; N], y: &[T]) {
+        self.began = Some(contacts.map(|contact| at(y, contact.rate)));
+    }
+
+    /// It has ended, and nothing has happened in it.
+    pub(super) fn pass(&mut self) {
+        self.began = None;
+    }
+
+    /// Impacts, rates that friction has brought to zero, and the phases after them: at an event, at which a step that
+    /// had a length ends, or at the end of a step of fixed length.
+    ///
+    /// # Errors
+    /// [`Error::Jammed`] if no phases are consistent.
+    pub(super) fn settle<M, D>(
+        &mut self,
+        equations: &mut Contacts<D, T, N>,
+        (model, t): (&M, T),
+        y: &mut D::State,
+        next: Option<(&Next<T>, T)>,
+        scratch: &mut [D::State; 2],
+    ) -> Result<(), Error>
     where
-        D: Forced<M, Scalar = T, State = S>,
+        D: Forced<M, Scalar = T>,
     {
         let zero = T::constant(0.0);
-        let Guards(guards) = self.guards(model);
-        let mut y = self.solver.state().clone();
-        let phases = self.solver.dynamics().phases;
-        let contacts = self.solver.dynamics().contacts;
+        let Guards(guards) = guards(equations, model, (t, y), &mut scratch[1]);
+        let (contacts, phases) = (equations.contacts, equations.phases);
         let is_due = |kind: usize, k: usize| {
             guards[kind][k] <= zero
                 || next.is_some_and(|(next, h)| {
                     let is_it = next.kind == kind && next.contact == k;
-                    is_it || self.is_as_good_as_reached(&contacts[k], phases[k], guards[kind][k], h)
+                    is_it || is_as_good_as_reached((&contacts[k], phases[k]), y.as_ref(), guards[kind][k], h)
                 })
         };
         let at_lower: [bool; N] = core::array::from_fn(|k| !phases[k].is_held() && is_due(0, k));
@@ -38,54 +117,45 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
             let moves = matches!(phases[k], Phase::Up | Phase::Down);
             let is_it = next.is_some_and(|(next, _)| next.kind == 2 && next.contact == k);
             if moves && (is_it || guards[2][k] < zero) {
-                y.as_mut()[contact.rate] = zero;
+                set(y.as_mut(), contact.rate, zero);
             }
         }
-        let before = contacts.map(|contact| y.as_ref()[contact.rate]);
-        let hits = self.hits(&mut y, [&at_lower, &at_upper], next.map(|(next, _)| next));
-        self.collide(model, &mut y, &hits);
-        let t = self.solver.time();
-        let chosen = self.solver.dynamics_mut().choose(model, (t, &y), &reached, &mut self.scratch[0]);
-        self.failure = chosen.err();
-        self.solver.set_state(&y);
-        self.solver.system_has_changed();
-        self.note(&phases, |k| {
+        let before = contacts.map(|contact| at(y.as_ref(), contact.rate));
+        let hits = self.hits(equations, y.as_mut(), [&at_lower, &at_upper], next.map(|(next, _)| next));
+        self.collide(equations, (model, t), y, &hits, scratch);
+        let chosen = equations.choose(model, (t, y), &reached, &mut scratch[0]);
+        self.note(&phases, &equations.phases, |k| {
             let is_hit = hits[k].is_some_and(|(hit, _)| hit.outward * before[k] < zero);
-            is_hit.then(|| [before[k], y.as_ref()[contacts[k].rate]])
+            is_hit.then(|| [before[k], at(y.as_ref(), contacts[k].rate)])
         });
+        self.began = None;
+        chosen
     }
 
-    /// Whether a coordinate is so near a stop that the time to it is rounding.
-    fn is_as_good_as_reached(&self, contact: &Contact<T>, phase: Phase, gap: T, h: T) -> bool {
-        let rate = self.solver.state().as_ref()[contact.rate].abs();
-        let place = self.solver.state().as_ref()[contact.coordinate].abs();
-        !phase.is_held() && gap.abs() <= T::constant(64.0) * T::EPSILON * (rate * h + place)
-    }
-
-    /// The stops that are hit, those that are rested on and those that are touched; and which end each is.
-    fn hits(
+    /// The stops that are hit, those that are rested on and those that are touched.
+    fn hits<D>(
         &mut self,
-        y: &mut S,
+        Contacts { contacts, phases, .. }: &Contacts<D, T, N>,
+        y: &mut [T],
         [at_lower, at_upper]: [&[bool; N]; 2],
         next: Option<&Next<T>>,
-    ) -> [Option<(Hit<T>, usize)>; N] {
+    ) -> [Touched<T>; N] {
         let (zero, one) = (T::constant(0.0), T::constant(1.0));
-        let Contacts { contacts, phases, .. } = self.solver.dynamics();
         core::array::from_fn(|k| {
-            let (outward, end) = match phases[k] {
-                Phase::AtLower => (one, 0),
-                Phase::AtUpper => (-one, 1),
-                _ if at_lower[k] => (one, 0),
-                _ if at_upper[k] => (-one, 1),
+            let (outward, is_upper) = match phases[k] {
+                Phase::AtLower => (one, false),
+                Phase::AtUpper => (-one, true),
+                _ if at_lower[k] => (one, false),
+                _ if at_upper[k] => (-one, true),
                 _ => return None,
             };
             let Contact { restitution, coordinate, rate, ends, .. } = contacts[k];
-            let approach = -outward * y.as_ref()[rate];
-            let (x, record) = (&mut y.as_mut()[coordinate], &mut self.record);
+            let (approach, end) = (-outward * at(y, rate), ends[usize::from(is_upper)]);
             // Steps of fixed length end beyond.
-            if next.is_none() && (*x - ends[end]) * outward < zero {
-                *x = ends[end];
+            if next.is_none() && (at(y, coordinate) - end) * outward < zero {
+                set(y, coordinate, end);
             }
+            let record = &mut self.record;
             if approach < zero {
                 // A flight that is too short to be told from none is taken back; another stop that is touched is not
                 // to be passed.
@@ -93,30 +163,35 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
                 let is_taken_back = self.stalled > 0 && is_own;
                 record.settled += u64::from(is_taken_back);
                 let outward = if is_taken_back { -outward } else { outward };
-                return Some((Hit { outward, restitution: zero }, end));
+                return Some((Hit { outward, restitution: zero }, is_upper));
             }
             let fastest = &mut self.fastest[k];
             *fastest = if approach > *fastest { approach } else { *fastest };
+            let restitution =
+                restitution * self.began.map_or(one, |began| share(-outward * began[k], approach));
             let is_slow = restitution * approach <= T::constant(SLOWEST) * *fastest;
-            record.settled += u64::from(is_slow && approach > zero && restitution > zero);
+            record.settled += u64::from(is_slow && approach > zero && contacts[k].restitution > zero);
             record.impacts += u64::from(approach > zero);
-            Some((Hit { outward, restitution: if is_slow { zero } else { restitution } }, end))
+            Some((Hit { outward, restitution: if is_slow { zero } else { restitution } }, is_upper))
         })
     }
 
     /// Resolves the impacts of coordinates that have reached a stop.
-    fn collide<M>(&mut self, model: &M, y: &mut S, hits: &[Option<(Hit<T>, usize)>; N])
-    where
-        D: Forced<M, Scalar = T, State = S>,
+    fn collide<M, D>(
+        &mut self,
+        equations: &Contacts<D, T, N>,
+        (model, t): (&M, T),
+        y: &mut D::State,
+        hits: &[Touched<T>; N],
+        [base, pushed]: &mut [D::State; 2],
+    ) where
+        D: Forced<M, Scalar = T>,
     {
         let zero = T::constant(0.0);
-        let equations = self.solver.dynamics();
         let contacts = &equations.contacts;
-        let rates = contacts.map(|contact| y.as_ref()[contact.rate]);
+        let rates = contacts.map(|contact| at(y.as_ref(), contact.rate));
         let mut after = rates;
         if hits.iter().zip(rates).any(|(hit, rate)| hit.is_some() && rate != zero) {
-            let t = self.solver.time();
-            let [base, pushed] = &mut self.scratch;
             let local = equations.local(model, (t, y), &hits.map(|hit| hit.is_some()), base);
             let outcome = impulses(&local.compliance, &rates, &hits.map(|hit| hit.map(|(hit, _)| hit)));
             self.record.lost = self.record.lost - work(&outcome, &rates);
@@ -124,21 +199,39 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
             after = outcome.1;
         }
         for ((contact, hit), after) in contacts.iter().zip(hits).zip(after) {
-            let Some((_, end)) = hit else { continue };
-            y.as_mut()[contact.rate] = after;
+            let Some((_, is_upper)) = hit else { continue };
+            set(y.as_mut(), contact.rate, after);
             // What rests is on the stop, to the last bit.
             if after == zero {
-                y.as_mut()[contact.coordinate] = contact.ends[*end];
+                set(y.as_mut(), contact.coordinate, contact.ends[usize::from(*is_upper)]);
             }
         }
     }
 
-    fn note(&mut self, before: &[Phase; N], hit: impl Fn(usize) -> Option<[T; 2]>) {
-        let now = self.solver.dynamics().phases;
+    fn note(&mut self, before: &[Phase; N], now: &[Phase; N], hit: impl Fn(usize) -> Option<[T; 2]>) {
         self.changes = core::array::from_fn(|k| Change { hit: hit(k), phases: [before[k], now[k]] });
         for (before, now) in before.iter().zip(now) {
             self.record.released += u64::from(before.is_held() && !now.is_held());
-            self.record.caught += u64::from(!before.is_held() && now == Phase::Sticks);
+            self.record.caught += u64::from(!before.is_held() && *now == Phase::Sticks);
         }
     }
+}
+
+/// What counts of the rate of an impact that a step has passed: the lesser of those at its beginning and its end. So a
+/// stop that is found late gives no energy, and flights shorter than a step are none.
+fn share<T: Real>(began: T, ended: T) -> T {
+    let zero = T::constant(0.0);
+    if began >= ended {
+        T::constant(1.0)
+    } else if began > zero {
+        began / ended
+    } else {
+        zero
+    }
+}
+
+/// Whether a coordinate is so near a stop that the time to it is rounding.
+fn is_as_good_as_reached<T: Real>((contact, phase): (&Contact<T>, Phase), y: &[T], gap: T, h: T) -> bool {
+    let (rate, place) = (at(y, contact.rate).abs(), at(y, contact.coordinate).abs());
+    !phase.is_held() && gap.abs() <= T::constant(64.0) * T::EPSILON * (rate * h + place)
 }

@@ -1,9 +1,30 @@
-//! A few equations.
+//! A few equations; and states by their indices, without a panic.
 
 use crate::Real;
 
 /// A pivot of less than this part of its diagonal depends on the others.
 const DEPENDENT: f64 = 1e-10;
+
+/// A number to which something is decided, but not less than what rounding leaves of it in this precision.
+pub(super) fn not_below_rounding<T: Real>(limit: f64) -> T {
+    let (limit, rounding) = (T::constant(limit), T::constant(ROUNDINGS) * T::EPSILON);
+    if limit > rounding { limit } else { rounding }
+}
+
+/// So many roundings are in what is decided.
+const ROUNDINGS: f64 = 64.0;
+
+/// An element of a state; zero if there is none of this index.
+pub(super) fn at<T: Real>(y: &[T], index: usize) -> T {
+    y.get(index).copied().unwrap_or(T::constant(0.0))
+}
+
+/// Sets an element of a state, if there is one of this index.
+pub(super) fn set<T>(y: &mut [T], index: usize, value: T) {
+    if let Some(place) = y.get_mut(index) {
+        *place = value;
+    }
+}
 
 /// Solves `W x = b` for the unknowns that are chosen, W being symmetric and positive semidefinite; the others, and
 /// those that depend on chosen ones, are zero. By elimination with the largest pivots on the diagonal.
@@ -12,7 +33,7 @@ pub(super) fn solve<T: Real, const N: usize>(
     right: &[T; N],
     chosen: &[bool; N],
 ) -> [T; N] {
-    let zero = T::constant(0.0);
+    let (zero, dependent) = (T::constant(0.0), not_below_rounding(DEPENDENT));
     let (mut w, mut x) = (*matrix, *right);
     let mut order = [0; N];
     let mut n = 0;
@@ -21,13 +42,14 @@ pub(super) fn solve<T: Real, const N: usize>(
         let mut best: Option<(usize, T)> = None;
         for k in (0..N).filter(|k| is_left[*k]) {
             let share = w[k][k] / matrix[k][k];
-            if share > T::constant(DEPENDENT) && best.is_none_or(|(_, largest)| share > largest) {
+            if share > dependent && best.is_none_or(|(_, largest)| share > largest) {
                 best = Some((k, share));
             }
         }
-        let Some((pivot, _)) = best else { break };
+        // Indices that have been kept are compared with N, so that the compiler knows them to be within bounds.
+        let Some((pivot, _)) = best.filter(|(pivot, _)| *pivot < N) else { break };
         is_left[pivot] = false;
-        order[n] = pivot;
+        set(&mut order, n, pivot);
         n += 1;
         for row in (0..N).filter(|row| is_left[*row]) {
             let factor = w[row][pivot] / w[pivot][pivot];
@@ -38,9 +60,13 @@ pub(super) fn solve<T: Real, const N: usize>(
         }
     }
     let mut solution = [zero; N];
-    for (k, &row) in order[..n].iter().enumerate().rev() {
-        let known = order[k + 1..n].iter().fold(x[row], |sum, &i| sum - w[row][i] * solution[i]);
-        solution[row] = known / w[row][row];
+    for k in (0..N).rev().filter(|k| *k < n) {
+        let row = order[k];
+        if row < N {
+            let later = order.iter().take(n).skip(k + 1).filter(|i| **i < N);
+            let known = later.fold(x[row], |sum, &i| sum - w[row][i] * solution[i]);
+            solution[row] = known / w[row][row];
+        }
     }
     solution
 }

@@ -3,6 +3,7 @@
 mod fading;
 mod loads;
 mod loops;
+mod stepped;
 
 use super::resolve::{Hit, impulses, work};
 use super::{Contact, Forced, Hybrid, Phase};

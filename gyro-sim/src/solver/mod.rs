@@ -11,6 +11,7 @@ use crate::contract::Storage;
 use crate::correct::{check_finite, check_time};
 use crate::integrate::Method;
 use crate::{Correction, Error, Ode, Real, System, Uncorrected, When};
+#[cfg(feature = "lanes")]
 pub(crate) use adaptive::Attempt;
 pub use control::{Control, Statistics};
 use core::cmp::Ordering;

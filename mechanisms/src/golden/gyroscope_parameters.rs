@@ -99,26 +99,30 @@ impl<T: gyro_sim::Real> Parameters<T> {
                 self.ring_axial_inertia,
                 self.ring_diametral_inertia,
             ],
-            &[
-                gyro_sim::admissible::Rule::Inertia([
-                    gyro_sim::admissible::Number::Given(3),
-                    gyro_sim::admissible::Number::Given(4),
-                    gyro_sim::admissible::Number::Given(4),
-                    gyro_sim::admissible::Number::Fixed(0.0),
-                    gyro_sim::admissible::Number::Fixed(0.0),
-                    gyro_sim::admissible::Number::Fixed(0.0),
-                ]),
-                gyro_sim::admissible::Rule::Inertia([
-                    gyro_sim::admissible::Number::Given(4),
-                    gyro_sim::admissible::Number::Given(3),
-                    gyro_sim::admissible::Number::Given(4),
-                    gyro_sim::admissible::Number::Fixed(0.0),
-                    gyro_sim::admissible::Number::Fixed(0.0),
-                    gyro_sim::admissible::Number::Fixed(0.0),
-                ]),
-                gyro_sim::admissible::Rule::Positive(
-                    gyro_sim::admissible::Number::Given(1),
+            |p| [
+                (
+                    3,
+                    gyro_sim::admissible::Rule::Inertia([
+                        p[3],
+                        p[4],
+                        p[4],
+                        0.0,
+                        0.0,
+                        0.0,
+                    ]),
                 ),
+                (
+                    4,
+                    gyro_sim::admissible::Rule::Inertia([
+                        p[4],
+                        p[3],
+                        p[4],
+                        0.0,
+                        0.0,
+                        0.0,
+                    ]),
+                ),
+                (1, gyro_sim::admissible::Rule::Positive(p[1])),
             ],
         )
     }

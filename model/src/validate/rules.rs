@@ -21,7 +21,7 @@ pub enum ParameterRule<'m> {
 
 impl ParameterRule<'_> {
     /// The numbers of the rule.
-    fn numbers(&self) -> Vec<&Number> {
+    pub fn numbers(&self) -> Vec<&Number> {
         match self {
             Self::Positive(number) | Self::NotNegative(number) => vec![number],
             Self::NotZero(numbers) => numbers.iter().collect(),

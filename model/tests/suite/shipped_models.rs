@@ -110,6 +110,20 @@ fn moving_bases_carry_the_gyroscope_from_rest_in_the_base() {
 }
 
 #[test]
+fn the_camera_starts_at_rest_in_its_vehicle() {
+    use std::f64::consts::{FRAC_PI_3, PI, TAU};
+    let (model, start) = (model("stabilised-gimbal"), start("stabilised-gimbal"));
+    assert_eq!((model.degrees_of_freedom(), model.controllers.len(), model.contacts.len()), (2, 2, 2));
+    let near = |a: f64, b: f64| assert!((a - b).abs() <= 1e-15, "{a} {b}");
+    near(start.joints[0].position[0], FRAC_PI_3);
+    near(start.joints[1].position[0], PI / 18.0);
+    // The yoke turns with the vehicle, whose x axis is 60 degrees away from its own.
+    let (roll, yaw) = (0.15 * 0.5 * TAU, 0.05 * 1.3 * TAU);
+    let expected = [roll * FRAC_PI_3.cos(), -roll * FRAC_PI_3.sin(), yaw];
+    start.v[3..6].iter().zip(expected).for_each(|(a, b)| near(*a, b));
+}
+
+#[test]
 fn extreme_gyroscopes_start_as_their_comments_say() {
     for (stem, expected) in [
         ("gyroscope-fast", [0.0, 0.0, 1e5]),

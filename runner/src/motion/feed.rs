@@ -143,6 +143,10 @@ impl<M: JointSpace<Joints: 'static> + 'static> Forced<M> for Fed<Joint, M> {
         n..n + layout.n_rates()
     }
 
+    fn work(&self, mechanism: &M) -> Option<usize> {
+        Some(Forced::<M>::rates(self, mechanism).end)
+    }
+
     fn forced(&self, mechanism: &M, t: M::Scalar, x: &M::Joints, forces: &[M::Scalar], dx: &mut M::Joints) {
         let Some(feed) = &self.feed else { return self.derivative(mechanism, t, x, dx) };
         let mechanism = feed.under(t, forces);

@@ -99,7 +99,8 @@ export class Live {
     try {
       work();
     } catch (failure) {
-      if (!(failure instanceof Failure)) throw failure;
+      // Of numbers that are too large to go on with, the mechanism says so by a RangeError.
+      if (!(failure instanceof Failure || failure instanceof RangeError)) throw failure;
       if (failure.status === 'stiff' && this.hasImplicit) {
         this.goOnImplicitly();
         return;

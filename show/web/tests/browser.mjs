@@ -210,6 +210,27 @@ const tests = {
     return page;
   },
 
+  async 'motors, springs beside sliders, and the sides that show them'(browser) {
+    const seen = async (name) => {
+      const page = await open(browser, at(name));
+      const found = await page.evaluate(() => {
+        const { all: [{ form: { joints, coils, thick } }], camera, controls } = globalThis.gyroPage.picture;
+        return { joints, coils, thick, from: camera.position.clone().sub(controls.target).normalize().toArray() };
+      });
+      await page.close();
+      return found;
+    };
+    const cart = await seen('cart-pendulum');
+    const [[, wall], [, slider]] = cart.coils[0].between;
+    assert.ok(slider[0] - wall[0] > 14 * cart.thick, 'the coil is behind the slider');
+    const { joints: [shoulder, elbow] } = await seen('arm');
+    const drums = (parts) => parts.filter(({ side, type }) => side === 0 && type === 'rod').length;
+    assert.deepEqual([drums(shoulder), drums(elbow)], [1, 0], 'motors');
+    // The top leans towards -y at the start; the disc's shaft is along z.
+    const [top, disc] = [(await seen('heavy-top')).from, (await seen('torsion')).from];
+    assert.ok(Math.abs(top[1]) < 0.2 && Math.abs(disc[2]) < 0.8, `${top}; ${disc}`);
+  },
+
   async 'pictures are like those of the gallery'(browser) {
     for (const [file, , part] of MODELS) {
       const name = nameOf(file);

@@ -12,6 +12,10 @@ export const MODELS = [
   ['models/slider-crank.toml', ['--t-end', '1'], 0.05],
   ['models/stewart-platform.toml', ['--t-end', '0.5', '--every', '0.01'], 0],
   ['models/double-wishbone.toml', ['--t-end', '1', '--every', '0.01'], 0.5],
+  ['models/four-bar-bushing.toml', ['--t-end', '1', '--every', '0.01'], 0.3],
+  ['examples/cart-pendulum/cart-pendulum.toml', ['--t-end', '2', '--every', '0.01'], 0.15],
+  ['examples/arm/arm.toml', ['--t-end', '2', '--every', '0.01'], 0.08],
+  ['models/stabilised-gimbal.toml', ['--coordinates', 'joint'], 0.12],
 ];
 
 // Those that are computed in the page, too.

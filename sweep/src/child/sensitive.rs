@@ -71,7 +71,8 @@ impl<R, F, G> Sensitive<R, F, G> {
     pub(super) fn new(job: &'static Job, inner: R, one: F, duals: G) -> Self {
         let scales = job.keep.by.iter().map(|target| job.plan.scale(*target)).collect();
         let (common, times) = (Common::new(job), job.times());
-        Self { inner, common, times, kept: Slopes::new(&job.keep), layout: None, scales, one, duals }
+        let kept = Slopes::new(&job.keep, times.len());
+        Self { inner, common, times, kept, layout: None, scales, one, duals }
     }
 }
 
@@ -87,7 +88,7 @@ where
         let keep = &self.common.job.keep;
         self.inner.run(block, starts, slopes);
         let rows = std::mem::take(&mut block.numbers);
-        let width = keep.width(self.times.len()) - keep.slopes();
+        let width = keep.numbers() + keep.series.len() * self.times.len();
         for (row, numbers) in (0..block.count).zip(rows.chunks_exact(width)) {
             let (numbers, series) = numbers.split_at(keep.numbers());
             block.numbers.extend(numbers);

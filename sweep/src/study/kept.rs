@@ -13,8 +13,12 @@ pub(super) struct Kept {
     pub(super) series: Vec<(String, String)>,
     /// How many of the series are for quantiles.
     pub(super) quantiles: usize,
+    /// The columns of the series that are kept for themselves, with the places of their names.
+    tracks: Vec<(usize, usize)>,
     /// Names of the derivatives.
     pub(super) slopes: Vec<(String, String)>,
+    /// Of each sample's.
+    pub(super) series_slopes: Vec<(String, String)>,
 }
 
 const KEYS: [&str; 7] = ["final", "extremes", "passages", "quantiles", "series", "estimate", "sensitivities"];
@@ -44,10 +48,14 @@ pub(super) fn read(reader: &mut Reader, whole: &Section<'_>, vocabulary: &Vocabu
     let quantiles = kept.named(reader, section.get("quantiles"), columns);
     kept.quantiles = quantiles.len();
     let series = kept.named(reader, section.get("series"), columns);
-    for (place, named) in quantiles.into_iter().chain(series) {
-        if !kept.keep.series.contains(&place) {
-            kept.keep.series.push(place);
+    for (k, (column, named)) in quantiles.into_iter().chain(series).enumerate() {
+        let place = kept.keep.series.iter().position(|other| *other == column).unwrap_or_else(|| {
+            kept.keep.series.push(column);
             kept.series.push((named.name.clone(), named.unit.clone()));
+            kept.series.len() - 1
+        });
+        if k >= kept.quantiles {
+            kept.tracks.push((column, place));
         }
     }
     if reader.mistakes.len() == before && kept.numbers.is_empty() && kept.series.is_empty() {
@@ -57,6 +65,11 @@ pub(super) fn read(reader: &mut Reader, whole: &Section<'_>, vocabulary: &Vocabu
 }
 
 impl Kept {
+    /// Whether there are series that are kept for themselves, not for quantiles alone.
+    pub(super) fn has_series(&self) -> bool {
+        !self.tracks.is_empty()
+    }
+
     /// Has what is kept differentiated by all that varies, if the study says so.
     pub(super) fn sensitivities(
         &mut self,
@@ -75,14 +88,16 @@ impl Kept {
         let n = self.numbers.len() - usize::from(self.keep.estimate);
         let of_violation = |column: &usize| self.keep.columns[*column] == Quantity::Violation;
         let kept = self.keep.finals.iter().chain(&self.keep.extremes);
+        // A constraint's violation has none.
+        let tracks: Vec<_> = self.tracks.iter().filter(|(column, _)| !of_violation(column)).collect();
         let is_rounding =
             kept.chain(self.keep.passages.iter().map(|passage| &passage.column)).any(of_violation);
         let words = if targets.is_empty() {
             Some(["nothing varies", "by what?", "write vary = [...], or remove this"])
         } else if targets.iter().any(|target| matches!(target, Target::Table(_))) {
             Some(["there is no derivative by the number of a table", "with `tables`", "remove this"])
-        } else if n == 0 {
-            let help = "write final, extremes or passages; quantiles and series have no derivatives";
+        } else if n == 0 && tracks.is_empty() {
+            let help = "write final, extremes, passages or series; quantiles have no derivatives";
             Some(["nothing is kept that has derivatives", "of what?", help])
         } else if is_rounding {
             let help = "keep `constraint violation` as a series";
@@ -107,11 +122,14 @@ impl Kept {
             keep.wrong(reader, "sensitivities", words);
             return;
         }
+        let derivatives = |(number, _): &(String, String)| {
+            let name = |(target, _): &(String, String)| (format!("d {number} / d {target}"), String::new());
+            names.iter().map(name).collect::<Vec<_>>()
+        };
+        self.slopes = self.numbers[..n].iter().flat_map(derivatives).collect();
+        self.series_slopes = tracks.iter().flat_map(|(_, place)| derivatives(&self.series[*place])).collect();
+        self.keep.sloped = tracks.iter().map(|(column, _)| *column).collect();
         self.keep.by = (0..targets.len()).collect();
-        let pairs = self.numbers[..n]
-            .iter()
-            .flat_map(|(number, _)| names.iter().map(move |(target, _)| format!("d {number} / d {target}")));
-        self.slopes = pairs.map(|name| (name, String::new())).collect();
     }
 }
 

@@ -22,7 +22,11 @@ impl Files for Bench {
             inputs: vec![("motor".to_owned(), 0.0), ("brake".to_owned(), 0.0)],
             controllers: if path == "closed.toml" { vec![("hold".to_owned(), vec![1])] } else { Vec::new() },
             starts: vec![start],
-            columns: vec![named("hinge", Quantity::Position(0)), named("hinge rate", Quantity::Rate(0))],
+            columns: vec![
+                named("hinge", Quantity::Position(0)),
+                named("hinge rate", Quantity::Rate(0)),
+                named("constraint violation", Quantity::Violation),
+            ],
         })
     }
 
@@ -85,7 +89,7 @@ fn everything_can_be_said() {
         names,
         ["hinge final", "hinge rate min", "hinge rate max", "hinge above 0.5", "estimated error"]
     );
-    assert_eq!((study.series.len(), study.quantiles), (2, 1));
+    assert_eq!((study.series.len(), study.quantiles, study.has_series), (2, 1, true));
     assert_eq!(study.keep.numbers(), names.len());
     assert_eq!(study.targets[3].0, "hinge start");
     assert!(
@@ -103,6 +107,23 @@ fn derivatives_are_by_all_that_varies() {
     assert_eq!((study.keep.by.len(), study.keep.slopes(), study.slopes.len()), (2, 6, 6));
     assert_eq!(study.slopes[1].0, "d hinge final / d hinge start");
     assert_eq!(study.keep.width(5), 4 + 6);
+    assert!(!study.has_series && study.series_slopes.is_empty());
+}
+
+/// Those of series are kept of what is kept for itself; a constraint's violation is rounding and has none.
+#[test]
+fn series_have_derivatives_and_quantiles_have_none() {
+    let study = study(&format!(
+        "{HEAD}run = {{ coordinates = \"joint\" }}\n\
+         vary = [{{ parameter = \"mass\", within = 0.1 }}, {{ start = \"hinge\", values = [0, 1] }}]\n\
+         [keep]\nquantiles = [\"hinge rate\", \"hinge\"]\n\
+         series = [\"constraint violation\", \"hinge\"]\nsensitivities = true"
+    ));
+    let names: Vec<&str> = study.series_slopes.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["d hinge / d mass", "d hinge / d hinge start"]);
+    assert!(study.has_series && study.slopes.is_empty());
+    assert_eq!((study.series.len(), study.keep.sloped.len()), (3, 1));
+    assert_eq!(study.keep.width(5), (3 + 2) * 5);
 }
 
 #[test]
@@ -168,7 +189,11 @@ fn mistakes_name_their_line_and_the_cure() {
             "s.toml:4",
             "no derivative",
         ),
-        (sensitive("", "uniform = [0, 1]").replace("final", "series"), "s.toml:4", "write final, extremes"),
+        (
+            sensitive("", "uniform = [0, 1]").replace("final", "quantiles"),
+            "s.toml:4",
+            "write final, extremes",
+        ),
         (sensitive("", "").replace("{ parameter = \"mass\",  }", ""), "s.toml:4", "nothing varies"),
         (sensitive("", "uniform = [0, 1]").replace("true", "1"), "s.toml:4", "true or false"),
         (sensitive("", "uniform = [0, 1]").replace("m.toml", "closed.toml"), "s.toml:4", "controllers close"),

@@ -29,6 +29,8 @@ pub(crate) fn lines(tools: &Tools, boards: &[Board]) -> Result<Vec<Line>, Failur
         let count = figures.output.count(precision, "paper", form, work).ok_or_else(missing)?;
         Ok::<f64, Failure>(f64::from(count.mean))
     };
+    let gimbal = m4.ran("stabilised-f32").ok_or_else(missing)?;
+    let longest = gimbal.output.count("f32", "stabilised", "joint", "tick").ok_or_else(missing)?.most;
     let control = m7.ran("control-f64").ok_or_else(missing)?;
     let ram = f64::from(control.output.ram.ok_or_else(missing)?);
     let stack = control.stack.as_ref().ok_or_else(missing)?.bytes as f64;
@@ -65,6 +67,12 @@ pub(crate) fn lines(tools: &Tools, boards: &[Board]) -> Result<Vec<Line>, Failur
         line("f64: stack beyond them, bound", "bytes", 3072.0, stack - ram),
         line("f64: text of the whole simulation", "bytes", 24_576.0, control.text()? as f64),
         line("f32: error of α and β after a second at the best step", "µrad", 5.0, 1e6 * best_error(boards)?),
+        line(
+            "M4F, f32, joint coordinates, stops and friction: the longest tick, ten steps",
+            "instructions",
+            1_000_000.0,
+            f64::from(longest),
+        ),
         line("ticks of the control loop that took too long", "", 0.0, overruns(boards)),
     ])
 }

@@ -55,7 +55,7 @@ impl Chip {
 }
 
 /// What the firmware's package has in every precision.
-pub(crate) const PROGRAMS: [&str; 3] = ["control", "runs", "figures"];
+pub(crate) const PROGRAMS: [&str; 4] = ["control", "runs", "figures", "stabilised"];
 
 /// A program for a chip.
 #[derive(Clone, Debug)]

@@ -66,7 +66,7 @@ pub(crate) fn embedded(args: &EmbeddedArgs) -> Result<(), Failure> {
 /// A thousand instructions that are known to be a thousand must be counted as such.
 fn check_clocks(boards: &[Board]) -> Result<(), Failure> {
     for board in boards {
-        for ran in board.programs.iter().filter(|ran| ran.program.name.starts_with("figures")) {
+        for ran in board.programs.iter().filter(|ran| !ran.output.counts.is_empty()) {
             if ran.output.thousand != Some(1000) {
                 return Err(failed(
                     board.chip,
@@ -99,7 +99,7 @@ struct Board {
 struct Ran {
     program: Program,
     output: Output,
-    /// Of the control loop only: the others have tables of functions, which no bound can follow.
+    /// Of programs as on a device only: the others have tables of functions, which no bound can follow.
     stack: Option<stack::Bound>,
 }
 
@@ -110,8 +110,8 @@ impl Board {
             let _spinner = Spinner::new(format!("running {} on {}", program.name, chip.name()));
             let output = Output::parse(&firmware::run(tools, chip, &program)?)
                 .map_err(|words| failed(chip, &format!("{}: {words}", program.name)))?;
-            let is_control = program.name.starts_with("control");
-            let stack = is_control.then(|| stack::bound(tools, &program)).transpose()?;
+            let is_device = ["control", "stabilised"].iter().any(|name| program.name.starts_with(name));
+            let stack = is_device.then(|| stack::bound(tools, &program)).transpose()?;
             programs.push(Ran { program, output, stack });
         }
         Ok(Self { chip, programs })

@@ -8,17 +8,28 @@ use gyro_cli::generate::{self, Asked};
 use gyro_cli::places::listing;
 use gyro_cli::programs::io_failure;
 use std::fs;
+use std::path::Path;
 
-/// What it runs besides the model files in `embedded/models` and the paper's scene, which `gyro-sim` has.
-const OF_THE_GALLERY: &str = "gyroscope-combined-offsets.toml";
+/// What it runs besides the model files in `embedded/models` and the paper's scene, which `gyro-sim` has; and the
+/// functions that it calls where those are not the usual ones.
+const OF_THE_GALLERY: [(&str, Option<[&str; 2]>); 2] =
+    [("gyroscope-combined-offsets.toml", None), ("stabilised-gimbal.toml", Some(["joint", "joint_outputs"]))];
+
+fn asked(page: &Path) -> Asked {
+    let listed = OF_THE_GALLERY.into_iter().find(|(name, _)| page.ends_with(name));
+    match listed.and_then(|(_, functions)| functions) {
+        Some(functions) => Asked::Here(functions.map(str::to_owned).to_vec()),
+        None => Asked::There,
+    }
+}
 
 /// Generates them, each proved, to where `embedded-scenes` includes them.
 pub(crate) fn generate() -> Result<(), Failure> {
     let mut pages = listing(&folder().join("models"))?;
-    pages.push(files::root().join("models").join(OF_THE_GALLERY));
+    pages.extend(OF_THE_GALLERY.map(|(name, _)| files::root().join("models").join(name)));
     let generated = folder().join("scenes").join("generated");
     fs::create_dir_all(&generated).map_err(|e| io_failure(&generated, &e))?;
-    for module in generate::modules(&pages, &|_| Asked::There, false) {
+    for module in generate::modules(&pages, &asked, false) {
         let module = module?;
         files::write(&generated.join(&module.name).with_extension("rs"), &module.as_item())?;
     }

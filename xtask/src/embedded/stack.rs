@@ -23,9 +23,8 @@ const INTERRUPT: u64 = 4 * (8 + 18 + 1);
 /// The interrupt that the firmware has.
 const HANDLER: &str = "SysTick";
 
-/// Functions in assembly, of which the compiler says nothing; they keep two registers at most.
-const ASSEMBLY: [&str; 2] = ["Reset", "HardFault"];
-const ASSEMBLY_BYTES: u64 = 8;
+/// Functions in assembly, of which the compiler says nothing, and the bytes that they keep by their disassembly.
+const ASSEMBLY: [(&str, u64); 3] = [("Reset", 8), ("HardFault", 8), ("__aeabi_uldivmod", 24)];
 
 /// The bound of a program.
 pub(crate) fn bound(tools: &Tools, program: &Program) -> Result<Bound, Failure> {
@@ -76,8 +75,8 @@ impl Graph {
         let mut current = None;
         for line in disassembly.lines() {
             if let Some((address, name)) = head(line) {
-                let is_assembly = ASSEMBLY.contains(&name);
-                let stack = stack.get(&address).copied().or(is_assembly.then_some(ASSEMBLY_BYTES));
+                let assembly = ASSEMBLY.iter().find(|(own, _)| *own == name).map(|(_, bytes)| *bytes);
+                let stack = stack.get(&address).copied().or(assembly);
                 functions.insert(address, Function { name: name.to_owned(), stack, ..Function::default() });
                 current = Some(address);
             } else if let Some(function) = current.and_then(|address| functions.get_mut(&address)) {

@@ -18,13 +18,14 @@ pub(crate) fn counts(boards: &[Board]) -> String {
     text += " |\n|---|---|---";
     columns.iter().for_each(|_| text += "|---");
     text += "|\n";
-    let Some(first) = boards.iter().find_map(|board| board.ran("figures-f32")) else { return text };
-    for count in &first.output.counts {
+    let counts = boards.iter().take(1).flat_map(|board| &board.programs).flat_map(|ran| &ran.output.counts);
+    for count in counts.filter(|count| count.precision == "f32") {
         let _ = write!(text, "| {} | {} | {}", count.scene, count.form, count.work.replace('-', " "));
         for (board, precision) in &columns {
-            let figures = board.ran(&format!("figures-{precision}"));
-            let found =
-                figures.and_then(|f| f.output.count(precision, &count.scene, &count.form, &count.work));
+            let outputs = board.programs.iter().map(|ran| &ran.output);
+            let found = outputs
+                .filter_map(|output| output.count(precision, &count.scene, &count.form, &count.work))
+                .next();
             let _ = match found {
                 None => write!(text, " | "),
                 Some(c) if c.least == c.most => write!(text, " | {}", c.mean),

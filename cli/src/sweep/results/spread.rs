@@ -39,7 +39,7 @@ pub(super) fn spread(folder: &Path, loaded: &Loaded) -> Result<Option<Spread>, F
         let mut blocks = Blocks::open(folder)?;
         while let Some(block) = blocks.block()? {
             for (_, numbers, _) in block.rows().filter(|(.., error)| error.is_none()) {
-                let tracks = &numbers[study.numbers.len() + study.slopes.len()..];
+                let [.., tracks] = study.keep.apart(numbers, times.len());
                 for (place, column) in columns.iter_mut().enumerate() {
                     let (sample, series) = (first + place / study.quantiles, place % study.quantiles);
                     column.push(tracks[sample * study.series.len() + series]);

@@ -47,33 +47,38 @@ fn quoted(text: &str) -> String {
 pub(super) struct Series<'a> {
     table: Option<Replaced>,
     times: &'a [f64],
-    width: usize,
+    /// How many series there are, and derivatives of them.
+    widths: [usize; 2],
 }
 
 impl<'a> Series<'a> {
     pub(super) fn open(folder: &Path, loaded: &Loaded, times: &'a [f64]) -> Result<Self, Failure> {
         let study = &loaded.study;
-        let width = study.series.len();
-        if width <= study.quantiles {
-            return Ok(Self { table: None, times, width });
+        let widths = [study.series.len(), study.series_slopes.len()];
+        if !study.has_series {
+            return Ok(Self { table: None, times, widths });
         }
         let mut table = Replaced::open(&folder.join("series.csv"))?;
-        let names: Vec<String> = study.series.iter().map(|named| quoted(&column(named))).collect();
+        let names: Vec<String> =
+            study.series.iter().chain(&study.series_slopes).map(|named| quoted(&column(named))).collect();
         let written = writeln!(table.file, "scenario,t [s],{}", names.join(","));
         written.map_err(|e| unwritable(&table.path, "written", &e))?;
-        Ok(Self { table: Some(table), times, width })
+        Ok(Self { table: Some(table), times, widths })
     }
 
-    pub(super) fn row(&mut self, k: u64, tracks: &[f64]) -> Result<(), Failure> {
+    /// The series of a scenario and their derivatives, both sample after sample.
+    pub(super) fn row(&mut self, k: u64, numbers: [&[f64]; 2]) -> Result<(), Failure> {
         let Some(table) = &mut self.table else { return Ok(()) };
         let mut write = || -> io::Result<()> {
-            for (t, values) in self.times.iter().zip(tracks.chunks_exact(self.width)) {
+            for (sample, t) in self.times.iter().enumerate() {
+                let [values, slopes] =
+                    [0, 1].map(|k| &numbers[k][sample * self.widths[k]..][..self.widths[k]]);
                 if values.iter().all(|value| value.is_nan()) {
                     continue;
                 }
                 write!(table.file, "{k}")?;
                 cell(&mut table.file, *t)?;
-                values.iter().try_for_each(|value| cell(&mut table.file, *value))?;
+                values.iter().chain(slopes).try_for_each(|value| cell(&mut table.file, *value))?;
                 writeln!(table.file)?;
             }
             Ok(())

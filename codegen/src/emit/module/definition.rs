@@ -85,6 +85,11 @@ impl ModuleWriter<'_> {
         let docs = parameters.iter().map(|p| format!(" Default {:?}.", default(p)));
         let model = &self.equations.model;
         let rules: Vec<_> = model.parameter_rules().iter().map(|rule| rule_tokens(model, rule)).collect();
+        let values_of_rules = if rules.is_empty() {
+            quote! { _ }
+        } else {
+            quote! { p }
+        };
         Some(quote! {
             #[doc = #doc]
             #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,7 +106,7 @@ impl ModuleWriter<'_> {
             impl<T: gyro_sim::Real> Parameters<T> {
                 /// Whether the mechanism can have these parameters, as the model file's rules decide.
                 pub fn check(&self) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {
-                    gyro_sim::admissible::check(&[#(self.#names),*], &[#(#rules),*])
+                    gyro_sim::admissible::check(&[#(self.#names),*], |#values_of_rules| [#(#rules),*])
                 }
             }
         })
@@ -184,57 +189,71 @@ impl ModuleWriter<'_> {
     }
 }
 
-/// A rule as `gyro_sim::admissible` has it.
+/// A rule as `gyro_sim::admissible` has it, with the place of the first parameter in it; `p` are the parameters.
 fn rule_tokens(model: &Model, rule: &ParameterRule<'_>) -> TokenStream {
-    let number = |number: &Number| number_tokens(model, number);
-    let list = |numbers: &[Number]| {
-        let numbers = numbers.iter().map(number);
+    let list = |numbers: &[Number], count: usize| {
+        let numbers = numbers.iter().map(|number| number_tokens(model, number));
+        let numbers = numbers.chain(std::iter::repeat(quote! { 0.0 })).take(count);
         quote! { [#(#numbers),*] }
     };
     let (kind, arguments) = match rule {
-        ParameterRule::Positive(one) => ("Positive", number(one)),
-        ParameterRule::NotNegative(one) => ("NotNegative", number(one)),
-        ParameterRule::NotZero(numbers) => {
-            let numbers = list(numbers);
-            ("NotZero", quote! { &#numbers })
-        }
+        ParameterRule::Positive(one) => ("Positive", number_tokens(model, one)),
+        ParameterRule::NotNegative(one) => ("NotNegative", number_tokens(model, one)),
+        ParameterRule::NotZero(numbers) => ("NotZero", list(numbers, 4)),
         ParameterRule::NotParallel(axis, zero) => {
-            let (axis, zero) = (list(*axis), list(*zero));
+            let (axis, zero) = (list(*axis, 3), list(*zero, 3));
             ("NotParallel", quote! { #axis, #zero })
         }
-        ParameterRule::Inertia(elements) => ("Inertia", list(*elements)),
+        ParameterRule::Inertia(elements) => ("Inertia", list(*elements, 6)),
     };
-    let kind = ident(kind);
-    quote! { gyro_sim::admissible::Rule::#kind(#arguments) }
+    let (kind, place) =
+        (ident(kind), index(rule.numbers().into_iter().find_map(first_parameter).unwrap_or(0)));
+    quote! { (#place, gyro_sim::admissible::Rule::#kind(#arguments)) }
 }
 
-/// A number of such a rule.
+/// The place of the first parameter that a number depends on.
+fn first_parameter(number: &Number) -> Option<usize> {
+    match number {
+        Number::Parameter { index, .. } => Some(*index),
+        Number::Computed(computation) => computation.operands().into_iter().find_map(first_parameter),
+        Number::Exact(_) | Number::Input { .. } => None,
+    }
+}
+
+/// A number of such a rule. Operands that are sums, products or quotients are in parentheses.
 fn number_tokens(model: &Model, number: &Number) -> TokenStream {
-    let (kind, inside) = match number {
-        Number::Parameter { index: place, negated } => {
-            let place = index(*place);
-            (if *negated { "Negated" } else { "Given" }, quote! { #place })
-        }
-        Number::Computed(computation) => {
-            let operands: Vec<_> =
-                computation.operands().into_iter().map(|number| number_tokens(model, number)).collect();
-            match **computation {
-                Computation::Sum(..) => ("Sum", quote! { &[#(#operands),*] }),
-                Computation::Product(..) => ("Product", quote! { &[#(#operands),*] }),
-                Computation::Quotient(..) => ("Quotient", quote! { &[#(#operands),*] }),
-                Computation::Power(_, exponent) => {
-                    let exponent = Literal::u32_unsuffixed(exponent);
-                    ("Power", quote! { &#(#operands)*, #exponent })
-                }
-            }
-        }
-        Number::Exact(_) | Number::Input { .. } => {
-            let value = float(model.value(number));
-            ("Fixed", quote! { #value })
+    let operand = |number: &Number| {
+        let tokens = number_tokens(model, number);
+        match number {
+            Number::Computed(of) if !matches!(**of, Computation::Power(..)) => quote! { (#tokens) },
+            _ => tokens,
         }
     };
-    let kind = ident(kind);
-    quote! { gyro_sim::admissible::Number::#kind(#inside) }
+    match number {
+        Number::Parameter { index: place, negated } => {
+            let (sign, place) = (negated.then(|| quote! { - }), index(*place));
+            quote! { #sign p[#place] }
+        }
+        Number::Computed(computation) => match &**computation {
+            Computation::Sum(a, b) => {
+                let (a, b) = (operand(a), operand(b));
+                quote! { #a + #b }
+            }
+            Computation::Product(a, b) => {
+                let (a, b) = (operand(a), operand(b));
+                quote! { #a * #b }
+            }
+            Computation::Quotient(a, b) => {
+                let (a, b) = (operand(a), operand(b));
+                quote! { #a / #b }
+            }
+            Computation::Power(base, exponent) => {
+                let (base, exponent) = (number_tokens(model, base), Literal::u32_unsuffixed(*exponent));
+                quote! { gyro_sim::admissible::power(#base, #exponent) }
+            }
+        },
+        Number::Exact(_) | Number::Input { .. } => float(model.value(number)),
+    }
 }
 
 fn default(parameter: &Parameter) -> f64 {

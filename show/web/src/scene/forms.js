@@ -287,13 +287,20 @@ export function forms(scene) {
     return reach(solid) < 0.7 * size ? solid : null;
   };
 
-  const coilOf = ({ kind, ends: [first, second] }, shaft) => {
-    if (kind === 'Prismatic') return { between: [[first.body, first.point], [second.body, second.point]], radius: 2.6 * thick };
+  const coilOf = (joint, shaft) => {
+    const { kind, ends: [first, second] } = joint;
+    if (kind === 'Prismatic') {
+      // From where the rail begins, if the slider would hide it.
+      const from = isSprungOnGround(scene, joint) ? add(first.point, first.axis, railOf(scene, joint, thick).begin) : first.point;
+      return { between: [[first.body, from], [second.body, second.point]], radius: 2.6 * thick };
+    }
     const [from, to] = shaft ? [0.3 * shaft, 0.85 * shaft] : [-2.5 * thick, 2.5 * thick];
-    return { body: first.body, from: add(first.point, first.axis, from), to: add(first.point, first.axis, to), radius: 2.6 * thick };
+    const radius = (shaft ? 4 : 2.6) * thick;
+    return { body: first.body, from: add(first.point, first.axis, from), to: add(first.point, first.axis, to), radius };
   };
   const parts = bodies.map((_, b) => formOf(b));
   return {
+    isWheel: rotors.some(Boolean) && joints.length === 1,
     hasTop: parts.some((each) => each.some(({ type }) => type === 'cone')),
     size: nested && isNest ? 2 * RING_STEP * widest : size,
     thick,
@@ -370,9 +377,24 @@ function stroke(scene, { ends: [first, second] }) {
   return range ?? [0, 0];
 }
 
+const acts = ({ mechanism }, joint, law) => (mechanism.efforts ?? []).some((effort) => effort.law === law && mechanism.joints[effort.joint] === joint);
+
+// Whether a spring pulls a slider towards a place of its rail on the ground.
+const isSprungOnGround = (scene, joint) => joint.kind === 'Prismatic' && scene.mechanism.bodies[joint.ends[0].body].support === 'fixed'
+  && acts(scene, joint, 'spring');
+
+// Where a rail begins and ends along its axis, with room for a spring behind the slider.
+function railOf(scene, joint, thick) {
+  const [low, high] = stroke(scene, joint);
+  const pad = Math.max(4 * thick, 0.1 * (high - low));
+  return { low, begin: low - pad - (isSprungOnGround(scene, joint) ? 14 * thick : 0), end: high + pad };
+}
+
 // Parts of a joint, each on one of its sides.
 function jointForm(scene, joint, { thick, rings, rotors, size }) {
   const { kind, ends: [first, second] } = joint;
+  // The drum of a motor sits beside the hinge.
+  const motor = { side: 0, type: 'rod', from: add(first.point, first.axis, 1.6 * thick), to: add(first.point, first.axis, 7 * thick), thick: 2.6 * thick };
   const isNested = [first, second].some(({ body }) => rings[body]) || rotors[second.body] || rotors[first.body];
   const pin = (end, side, half, wide) => ({
     side, type: 'rod', from: add(end.point, end.axis, -half), to: add(end.point, end.axis, half), thick: wide,
@@ -380,7 +402,7 @@ function jointForm(scene, joint, { thick, rings, rotors, size }) {
   const isOnGround = scene.mechanism.bodies[first.body].support === 'fixed';
   switch (kind) {
     case 'Revolute':
-      return isNested ? [] : [pin(second, 1, 2.6 * thick, 1.4 * thick)];
+      return isNested ? [] : [pin(second, 1, 2.6 * thick, 1.4 * thick), ...(acts(scene, joint, 'motor') ? [motor] : [])];
     case 'Spherical':
       return [{ side: 1, type: 'sphere', at: second.point, radius: 2 * thick }];
     case 'Universal':
@@ -390,14 +412,13 @@ function jointForm(scene, joint, { thick, rings, rotors, size }) {
     case 'Cylindrical':
     case 'PointOnLine':
     case 'Screw': {
-      const [low, high] = stroke(scene, joint);
-      const pad = Math.max(4 * thick, 0.1 * (high - low));
+      const { low, begin, end } = railOf(scene, joint, thick);
       // A rail of the ground is where the slider goes; one of a moving body also reaches that body.
-      const from = isOnGround ? low - pad : Math.min(0, low - pad);
-      const to = isOnGround || low <= 0 ? Math.max(0, high + pad) : low + 2 * thick;
+      const from = isOnGround ? begin : Math.min(0, begin);
+      const to = isOnGround || low <= 0 ? Math.max(0, end) : low + 2 * thick;
       const rail = {
         side: 0, type: kind === 'Prismatic' ? 'rail' : 'rod', from: add(first.point, first.axis, from),
-        to: add(first.point, first.axis, isOnGround ? high + pad : to), thick: kind === 'Screw' ? 0.9 * thick : 0.75 * thick,
+        to: add(first.point, first.axis, isOnGround ? end : to), thick: kind === 'Screw' ? 0.9 * thick : 0.75 * thick,
         ground: isOnGround, across: first.zero, metal: true,
       };
       if (kind === 'PointOnLine') return [rail, { side: 1, type: 'sphere', at: second.point, radius: 1.8 * thick }];

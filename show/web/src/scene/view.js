@@ -24,6 +24,18 @@ function hinge(scene, up) {
   return Math.abs(dot(axes[0], up.toArray())) < 0.3 ? new Vector3(...axes[0]) : null;
 }
 
+// Where a top leans at the start, seen from above.
+function leaning(scene, up, form) {
+  for (const [b, parts] of form.parts.entries()) {
+    const cone = parts.find(({ type }) => type === 'cone');
+    if (!cone) continue;
+    const axis = new Vector3(...turn(poseAt(scene, b, scene.time[0]), cone.axis));
+    axis.addScaledVector(up, -axis.dot(up));
+    if (axis.length() > 0.1) return axis.normalize();
+  }
+  return null;
+}
+
 // From the mechanism to the camera.
 export function direction(scene, up, form) {
   const nested = form.parts.flat().some(({ type }) => type === 'ring');
@@ -35,8 +47,12 @@ export function direction(scene, up, form) {
     planar.addScaledVector(up, -planar.dot(up)).normalize();
     if (planar.dot(new Vector3(1, 1.1, 1.2)) < 0) planar.negate();
     const right = up.clone().cross(planar);
-    return planar.addScaledVector(up, 0.3).addScaledVector(right, 0.42).normalize();
+    // What a wheel turns on is behind or before it.
+    return planar.addScaledVector(up, 0.3).addScaledVector(right, form.isWheel ? 1.2 : 0.42).normalize();
   }
+  // Across the lean of a top, which otherwise hides the tip that it spins on.
+  const lean = leaning(scene, up, form);
+  if (lean) return lean.clone().cross(up).addScaledVector(up, 0.12).normalize();
   const front = side.clone().cross(up);
   return front.multiplyScalar(0.82).addScaledVector(side, 0.62).addScaledVector(up, form.hasTop ? 0.12 : 0.38).normalize();
 }

@@ -59,6 +59,16 @@ fn samples_of(job: &Job, row: &[f64]) -> [usize; 3] {
 /// The distance of differences, in parts of a target's scale.
 const APART: f64 = 2e-3;
 
+/// The derivative of a number, times the scale, from runs at −2, −1, 1 and 2 times h; NaN where there is no number. None
+/// where the differences of the inner and the outer two differ: over a scale that is far beyond the others' nothing is
+/// a line.
+fn judged_slope(near: &[Vec<f64>], number: usize, h: f64, scale: f64) -> Option<f64> {
+    let [a, b, c, d] = [0, 1, 2, 3].map(|k| near[k][number]);
+    let [inner, outer] = [(c - b) / (2.0 * h), (d - a) / (4.0 * h)].map(|slope| slope * scale);
+    let slope = (4.0 * inner - outer) / 3.0;
+    (slope.is_nan() || (inner - outer).abs() < 1e-7 + 1e-3 * slope.abs()).then_some(slope)
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 
@@ -84,6 +94,7 @@ proptest! {
         // Two passages and extremes of other quantities than last values.
         job.keep.finals = vec![0, 2];
         job.keep.series = vec![0, 1, 2];
+        job.keep.sloped = vec![2, 0];
         for (target, part) in starts.iter().zip([parts.0, parts.1, parts.2]) {
             let index = job.plan.targets.len();
             job.plan.targets.push(target.clone());
@@ -97,6 +108,7 @@ proptest! {
         let mut source = Source::new(&job.plan);
         let mut values = vec![0.0; n];
         let mut judged = 0;
+        let samples = job.times().len();
         for (k, row, error) in packed.rows() {
             prop_assert_eq!(error, None);
             source.write(k, &mut values);
@@ -104,20 +116,34 @@ proptest! {
             let plain = numbers(&job, vec![values.clone()]);
             let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
             prop_assert_eq!(bits(&row[..count]), bits(&plain[0][..count]));
+            let [_, series_slopes, series] = job.keep.apart(row, samples);
+            prop_assert_eq!(bits(series), bits(&plain[0][count..]));
             for target in 0..n {
-                let h = APART * job.plan.scale(target);
+                let scale = job.plan.scale(target);
+                let h = APART * scale;
                 let shifted = |parts: f64| {
                     let mut values = values.clone();
                     values[target] += parts * h;
                     values
                 };
                 let near = numbers(&job, [-2.0, -1.0, 1.0, 2.0].map(shifted).to_vec());
+                for (place, found) in series_slopes.iter().skip(target).step_by(n).enumerate() {
+                    let (sample, column) = (place / 2, job.keep.sloped[place % 2]);
+                    let Some(expected) = judged_slope(&near, count + 3 * sample + column, h, scale) else {
+                        continue;
+                    };
+                    let found = found * scale;
+                    prop_assert!(
+                        (found - expected).abs() < 2e-7 * (1.0 + expected.abs()),
+                        "scenario {}, sample {}, column {}, target {}: {} {}",
+                        k, sample, column, target, found, expected
+                    );
+                }
                 // Where an extreme or a passage moves on to another sample it has a kink.
                 let is_kinked = near.iter().any(|row| samples_of(&job, row) != samples_of(&job, &plain[0]));
                 for number in 0..count {
-                    let [a, b, c, d] = [0, 1, 2, 3].map(|k| near[k][number]);
-                    let expected = (8.0 * (c - b) - (d - a)) / (12.0 * h) * job.plan.scale(target);
-                    let found = row[count + number * n + target] * job.plan.scale(target);
+                    let Some(expected) = judged_slope(&near, number, h, scale) else { continue };
+                    let found = row[count + number * n + target] * scale;
                     if is_kinked || expected.is_nan() {
                         prop_assert!(is_kinked || found.is_nan());
                         continue;

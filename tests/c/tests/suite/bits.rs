@@ -229,7 +229,7 @@ where
 
 /// The tests of a mechanism: its page, its type and number type, what is set, and what besides is compared.
 macro_rules! mechanism {
-    ($name:ident, $module:ident::$ty:ident<$number:ty>, $page:literal, $parameters:expr, $inputs:expr $(, $more:ident)*) => {
+    ($name:ident, $module:ident::$ty:ident<$number:ty>, $page:expr, $parameters:expr, $inputs:expr $(, $more:ident)*) => {
         mod $name {
             use super::*;
 
@@ -297,9 +297,17 @@ mechanism!(inputs, arm::Arm<f64>, "examples/arm/arm.toml", [1.25], [0.75], impli
 mechanism!(inputs_in_f32, arm::Arm<f32>, "examples/arm/arm.toml", [1.25], [0.75], implicit);
 mechanism!(
     motor_and_spring,
-    cart_pendulum::CartPendulum<f64>,
-    "examples/cart-pendulum/cart-pendulum.toml",
-    [44.0],
-    NONE,
+    cart::Cart<f64>,
+    concat!(env!("OUT_DIR"), "/cart.toml"),
+    [44.0, 0.45, 0.42],
+    [1.5],
+    implicit
+);
+mechanism!(
+    motors,
+    robot_arm::RobotArm<f64>,
+    concat!(env!("OUT_DIR"), "/robot_arm.toml"),
+    [0.3, 0.42, 0.33],
+    [2.5, -0.75],
     implicit
 );

@@ -40,10 +40,21 @@ int main(void)
             counts[gyro_solver_step(&solver, &m, number)]++;
             counts[gyro_solver_interpolate(&solver, &m, number, x)]++;
             counts[gyro_solver_correct(&solver, &m)]++;
-            gyro_set_parameter(&m, -1, number);
-            gyro_set_parameter(&m, GYRO_N_PARAMETERS, number);
-            gyro_set_input(&m, -1, number);
-            gyro_set_input(&m, GYRO_N_INPUTS, number);
+            if (gyro_set_parameter(&m, -1, number) || gyro_set_parameter(&m, GYRO_N_PARAMETERS, number)
+                || gyro_set_input(&m, -1, number) || gyro_set_input(&m, GYRO_N_INPUTS, number))
+                return 1;
+            for (int place = 0; place < GYRO_N_PARAMETERS; place++) {
+                if (gyro_set_parameter(&m, place, number) != !!isfinite(number))
+                    return 2;
+                counts[run(&m, method, -1, 0, 0, 1, 1e-4)]++;
+                gyro_init(&m);
+            }
+            for (int place = 0; place < GYRO_N_INPUTS; place++) {
+                if (gyro_set_input(&m, place, number) != !!isfinite(number))
+                    return 3;
+                counts[run(&m, method, -1, 0, 0, 1, 1e-4)]++;
+                gyro_init(&m);
+            }
             for (int i = 0; i < GYRO_N_STATE; i++)
                 y[i] = number;
             gyro_to_joints(&m, number, y, x);

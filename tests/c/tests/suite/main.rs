@@ -3,6 +3,7 @@
 mod bits;
 mod docs;
 mod hostile;
+mod languages;
 mod program;
 mod proof;
 mod target;

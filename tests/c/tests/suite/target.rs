@@ -86,17 +86,17 @@ fn on_a_cortex_m7(page: &str, precision: Precision) -> Program {
 }
 
 fn in_webassembly(page: &str, precision: Precision) -> Program {
-    let script = es_module(page, precision);
+    let script = es_module(page, precision, IN_C.0);
     let driver = script.with_file_name("driver.mjs");
     fs::write(&driver, include_str!("driver.mjs")).expect("a file");
     Program { runner: vec![tool("node").into(), driver.into(), script.into()], before_argument: "" }
 }
 
-/// The ES module of a mechanism, beside its module.
-pub(crate) fn es_module(page: &str, precision: Precision) -> PathBuf {
+/// The ES module of a mechanism, beside its module, in a folder for a program.
+pub(crate) fn es_module(page: &str, precision: Precision, program: &str) -> PathBuf {
     let (model, module) = model_and_module(page, None);
     let exported = wasm(&model, &module.code, precision).expect("a module");
-    let folder = folder(&model.name, "driver", precision, "wasm");
+    let folder = folder(&model.name, program, precision, "wasm");
     let script = (format!("{}.mjs", model.name), exported.script);
     for (file, text) in exported.files.iter().chain([&script]) {
         fs::write(folder.join(file), text).expect("a file");

@@ -61,6 +61,7 @@ pub(super) fn definition(model: &Model, name: &str, has_parameter_setup: bool) -
     let set_one = setter(set_one, parameters, around);
     let own = list(parameters.iter().map(|p| format!("self.{}", p.name)));
     let rules = list(model.parameter_rules().iter().map(|rule| rule_of_parameters(model, rule)));
+    let values_of_rules = if rules.is_empty() { "_" } else { "p" };
     format!(
         "#[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Parameters<T> {{ {declared} }}
@@ -69,7 +70,7 @@ pub(super) fn definition(model: &Model, name: &str, has_parameter_setup: bool) -
         }}
         impl<T: gyro_sim::Real> Parameters<T> {{
             pub fn check(&self) -> ::core::result::Result<(), gyro_sim::admissible::Inadmissible> {{
-                gyro_sim::admissible::check(&[{own}], &[{rules}])
+                gyro_sim::admissible::check(&[{own}], |{values_of_rules}| [{rules}])
             }}
         }}
         #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,35 +96,60 @@ pub(super) fn definition(model: &Model, name: &str, has_parameter_setup: bool) -
     )
 }
 
-/// A rule that parameters must satisfy, as `gyro_sim::admissible` has it.
+/// A rule that parameters must satisfy, as `gyro_sim::admissible` has it, after the first parameter that it names.
 fn rule_of_parameters(model: &Model, rule: &ParameterRule<'_>) -> String {
     let number = |number: &Number| number_of_parameters(model, number);
     let several = |numbers: &[Number]| format!("[{}]", list(numbers.iter().map(number)));
     let inside = match rule {
         ParameterRule::Positive(one) => format!("Positive({})", number(one)),
         ParameterRule::NotNegative(one) => format!("NotNegative({})", number(one)),
-        ParameterRule::NotZero(numbers) => format!("NotZero(&{})", several(numbers)),
+        ParameterRule::NotZero(numbers) => {
+            let zeros = std::iter::repeat_n("0.0".to_owned(), 4 - numbers.len());
+            format!("NotZero([{}])", list(numbers.iter().map(number).chain(zeros)))
+        }
         ParameterRule::NotParallel(axis, zero) => {
             format!("NotParallel({}, {})", several(*axis), several(*zero))
         }
         ParameterRule::Inertia(elements) => format!("Inertia({})", several(*elements)),
     };
-    format!("gyro_sim::admissible::Rule::{inside}")
+    let mut places = Vec::new();
+    rule.numbers().into_iter().for_each(|number| push_parameters(number, &mut places));
+    format!("({}, gyro_sim::admissible::Rule::{inside})", places.first().copied().unwrap_or_default())
+}
+
+/// The parameters that a number depends on, from left to right.
+fn push_parameters(number: &Number, places: &mut Vec<usize>) {
+    match number {
+        Number::Parameter { index, .. } => places.push(*index),
+        Number::Computed(of) => {
+            of.operands().into_iter().for_each(|operand| push_parameters(operand, places))
+        }
+        Number::Exact(_) | Number::Input { .. } => {}
+    }
 }
 
 /// A number of such a rule.
 fn number_of_parameters(model: &Model, number: &Number) -> String {
-    let inner = |number: &Number| number_of_parameters(model, number);
-    let inside = match number {
-        Number::Parameter { index, negated: false } => format!("Given({index})"),
-        Number::Parameter { index, negated: true } => format!("Negated({index})"),
-        Number::Computed(computation) => match &**computation {
-            Computation::Sum(a, b) => format!("Sum(&[{}, {}])", inner(a), inner(b)),
-            Computation::Product(a, b) => format!("Product(&[{}, {}])", inner(a), inner(b)),
-            Computation::Quotient(a, b) => format!("Quotient(&[{}, {}])", inner(a), inner(b)),
-            Computation::Power(base, exponent) => format!("Power(&{}, {exponent})", inner(base)),
-        },
-        number => format!("Fixed({:?})", model.value(number)),
+    let binary = |a: &Number, sign: char, b: &Number| {
+        let [a, b] = [a, b].map(|operand| {
+            let text = number_of_parameters(model, operand);
+            let is_power = matches!(operand, Number::Computed(of) if matches!(**of, Computation::Power(..)));
+            if matches!(operand, Number::Computed(_)) && !is_power { format!("({text})") } else { text }
+        });
+        format!("{a} {sign} {b}")
     };
-    format!("gyro_sim::admissible::Number::{inside}")
+    match number {
+        Number::Parameter { index, negated: false } => format!("p[{index}]"),
+        Number::Parameter { index, negated: true } => format!("-p[{index}]"),
+        Number::Computed(computation) => match &**computation {
+            Computation::Sum(a, b) => binary(a, '+', b),
+            Computation::Product(a, b) => binary(a, '*', b),
+            Computation::Quotient(a, b) => binary(a, '/', b),
+            Computation::Power(base, exponent) => {
+                let base = number_of_parameters(model, base);
+                format!("gyro_sim::admissible::power({base}, {exponent})")
+            }
+        },
+        number => format!("{:?}", model.value(number)),
+    }
 }

@@ -1,0 +1,24 @@
+//! The stabilised gimbal: the bits of its run, what its ticks take, and its memory.
+
+use crate::figures::{self, Counter};
+use crate::{board, panic, print, runs};
+use embedded_scenes::runs::Bits;
+use embedded_scenes::stabilised::{self, NAME, Stabilised};
+
+/// The run in one precision.
+pub fn run<T: Bits>() -> ! {
+    panic::fault();
+    figures::start();
+    let mut counter = Counter::new();
+    let outcome = stabilised::run::<T, _>(&mut counter);
+    let is_success = outcome.is_ok();
+    runs::show(NAME, outcome);
+    counter.print(T::NAME, NAME);
+    for (name, value) in [("stack ", board::stack()), ("ram ", size_of::<Stabilised<T>>() as u32)] {
+        print::text(name);
+        print::number(value);
+        print::line("");
+    }
+    print::line("end");
+    board::exit(is_success)
+}
