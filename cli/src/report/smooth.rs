@@ -10,7 +10,6 @@ use super::curve::{Curve, Outcome, Point, Setting, Treatment};
 use super::figures::{Work, error_axis};
 use super::lab::{Lab, Plan};
 use super::page::Page;
-use super::study::Study;
 use super::truth::Truth;
 use crate::args::{Engine, Precision};
 use crate::failure::Failure;
@@ -175,33 +174,40 @@ pub(crate) fn data(smooth: &Smooth) -> String {
     text
 }
 
-/// Rigid runs of a study: those that go from event to event.
-fn rigid(study: &Study) -> impl Iterator<Item = &Point> {
-    study.points.iter().filter(|point| {
+/// What smooth runs are shown beside: the scene, and its runs from event to event.
+#[derive(Clone, Copy)]
+pub(crate) struct Beside<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) t_end: f64,
+    pub(crate) is_relative: bool,
+    pub(crate) points: &'a [Point],
+}
+
+fn rigid<'a>(beside: &Beside<'a>) -> impl Iterator<Item = &'a Point> {
+    beside.points.iter().filter(|point| {
         point.curve.precision == Precision::F64 && matches!(point.setting, Setting::Tolerance(_))
     })
 }
 
 /// The section of a scene's page.
-pub(crate) fn write(study: &Study, page: &mut Page) {
-    let Some(smooth) = &study.smooth else { return };
+pub(crate) fn write(smooth: &Smooth, beside: &Beside<'_>, page: &mut Page) {
     page.heading(2, "Rigid and smooth stops and friction");
     page.text(format!(
         "The contacts of the model file, which runs follow from event to event, beside `[[force]]` of kind \"stop\" and \"coulomb\" in \
          their place. Those have a width ε: friction is tanh(rate / ε) of its kinetic level, with ε in rad/s or m/s; \
          impacts on a stop last about ε s, and rebound about as much as its restitution says. They have no static level, and none that \
          depends on a reaction. Errors of both are counted from the rigid motion. Data: `{}-smooth.csv`.",
-        study.lab.name
+        beside.name
     ));
-    let chart = chart(study, smooth);
+    let chart = chart(smooth, beside);
     page.figure(
-        format!("{}-smooth.svg", study.lab.name),
+        format!("{}-smooth.svg", beside.name),
         "Error against CPU time: rigid contacts, and smooth ones of four widths",
         chart.svg(),
     );
     let all = || smooth.points.iter().map(|(_, point)| point);
     let rows = TARGETS.iter().map(|&target| {
-        let [rigid, smooth] = [quickest(rigid(study), target), quickest(all(), target)];
+        let [rigid, smooth] = [quickest(rigid(beside), target), quickest(all(), target)];
         let cell = |found: Option<(&Point, &Outcome)>| match found {
             None => "not reached".to_owned(),
             Some((point, o)) => format!(
@@ -209,7 +215,7 @@ pub(crate) fn write(study: &Study, page: &mut Page) {
                 number(1e3 * o.seconds, 3),
                 number(o.ratio, 3),
                 point.curve.integrator,
-                point.setting.name(study.lab.t_end)
+                point.setting.name(beside.t_end)
             ),
         };
         let over = match (rigid, smooth) {
@@ -232,7 +238,7 @@ fn quickest<'a>(points: impl Iterator<Item = &'a Point>, target: f64) -> Option<
     Some((point, point.outcome.as_ref().ok()?))
 }
 
-fn chart(study: &Study, smooth: &Smooth) -> Chart {
+fn chart(smooth: &Smooth, beside: &Beside<'_>) -> Chart {
     let line = |colour, stroke| Style { colour, stroke, marker: Marker::Disc };
     let (mut lines, mut legend) = (Vec::new(), Vec::new());
     let mut add = |name: String, style: Style, points: Vec<&Point>| {
@@ -244,7 +250,7 @@ fn chart(study: &Study, smooth: &Smooth) -> Chart {
         }
     };
     for (integrator, colour) in [(Integrator::Tsit5, GREEN), (Integrator::Dop853, BLUE)] {
-        let own = rigid(study).filter(|point| point.curve.integrator == integrator).collect();
+        let own = rigid(beside).filter(|point| point.curve.integrator == integrator).collect();
         add(format!("rigid, {integrator}"), line(colour, Stroke::Solid), own);
     }
     for (width, colour) in WIDTHS.into_iter().zip([SKY, ORANGE, VERMILION, PURPLE]) {
@@ -252,9 +258,9 @@ fn chart(study: &Study, smooth: &Smooth) -> Chart {
         add(format!("smooth, ε = {width:e}"), line(colour, Stroke::Dashed), own);
     }
     Chart {
-        title: format!("{}: rigid and smooth stops and friction", study.lab.name),
+        title: format!("{}: rigid and smooth stops and friction", beside.name),
         x: Work::Time.axis(),
-        y: error_axis(study.is_relative()),
+        y: error_axis(beside.is_relative),
         n_columns: 1,
         panels: vec![Panel {
             title: "fronts of all tolerances; smooth: of three integrators".to_owned(),

@@ -9,7 +9,7 @@ use super::figures::{self, Work};
 use super::goals;
 use super::order::WINDOW;
 use super::page::Page;
-use super::smooth;
+use super::smooth::{self, Beside};
 use super::study::Study;
 use crate::args::{Engine, Precision};
 use crate::failure::Failure;
@@ -104,7 +104,15 @@ fn page(study: &Study, machine: &str, moving: Option<&str>) -> Page {
     convergence(study, &mut page);
     #[cfg(feature = "jit")]
     engines::write(&study.engines, &mut page);
-    smooth::write(study, &mut page);
+    if let Some(smooth) = &study.smooth {
+        let beside = Beside {
+            name: &study.lab.name,
+            t_end: study.lab.t_end,
+            is_relative: study.is_relative(),
+            points: &study.points,
+        };
+        smooth::write(smooth, &beside, &mut page);
+    }
     drift(study, &mut page);
     stability(study, &mut page);
     failures(study, &mut page);

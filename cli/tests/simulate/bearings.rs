@@ -1,5 +1,5 @@
-//! Friction in proportion to reactions, in model files: blocks on inclines and a pendulum in a bearing, against their own
-//! equations.
+//! Friction in proportion to reactions, in model files: blocks on inclines and a pendulum in a bearing against their
+//! own equations, random chains and a loop against the law and the energy.
 
 use crate::contacts::chain;
 use crate::support::{Folder, json, refused, simulate};

@@ -38,8 +38,8 @@ impl<M: JointSpace + Clone, const N: usize> Forced<M> for JointInputs<N> {
     }
 }
 
-/// The same, and friction may grow with reactions: with the force of an output of kind `reaction`, of the contact's joint
-/// or of any other.
+/// The same, and friction may grow with reactions: with the force of an output of kind `reaction`, of the contact's
+/// joint or of any other.
 #[derive(Clone, Copy, Debug)]
 pub struct LoadedJointInputs<const N: usize> {
     /// The index of each contact's input among the model's.

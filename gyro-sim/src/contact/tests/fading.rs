@@ -5,8 +5,8 @@ use crate::contact::{Contact, Forced, Hybrid, Phase};
 use crate::{Dop853, Ode};
 use core::ops::Range;
 
-/// A mass on a stop and a hand that moves on at one metre each second, whose place makes the push on the mass: the state
-/// is `(x, z, ẋ, ż)`. Nothing depends on time itself.
+/// A mass on a stop and a hand that moves on at one metre each second, whose place makes the push on the mass: the
+/// state is `(x, z, ẋ, ż)`. Nothing depends on time itself.
 struct Pushed {
     size: f64,
     fade: f64,
