@@ -94,9 +94,9 @@ fn a_run_that_fails_is_shown_up_to_there() {
 fn a_model_with_rigid_stops_is_shown_without_options() {
     let folder = Folder::new("contacts");
     let page = folder.0.join("gimbal.html");
-    let output = show("examples/rigid-gimbal.toml", &page, &["--engine", "jit", "--t-end", "0.05"]);
+    let output = show("models/stabilised-gimbal.toml", &page, &["--engine", "jit", "--t-end", "0.05"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(head(&page)["scenes"][0]["mechanism"]["name"], "rigid_gimbal");
+    assert_eq!(head(&page)["scenes"][0]["mechanism"]["name"], "stabilised_gimbal");
 }
 
 #[test]

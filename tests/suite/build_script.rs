@@ -155,7 +155,7 @@ fn the_tutorial_s_package_builds_and_runs() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tutorial");
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(folder.join("src")).unwrap();
-    let [model, manifest] = &of_the_tutorial("toml")[..] else { panic!("a model file and a manifest") };
+    let [model, manifest, ..] = &of_the_tutorial("toml")[..] else { panic!("a model file and a manifest") };
     let [script, program] = &of_the_tutorial("rust,ignore")[..] else { panic!("a script and a program") };
     let clone = root().display().to_string();
     let manifest =

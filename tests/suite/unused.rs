@@ -13,7 +13,7 @@ fn code(name: &str, text: &str) -> String {
 
 /// A page, its first joint and its first body that moves.
 const PAGES: [(&str, &str); 3] =
-    [("compound-pendulum", "hinge"), ("four-bar", "crank_pivot"), ("gyroscope-coulomb", "alpha")];
+    [("compound-pendulum", "pivot"), ("four-bar", "crank_pivot"), ("gyroscope-coulomb", "alpha")];
 
 #[test]
 fn events_leave_no_trace() {

@@ -137,6 +137,7 @@ pub fn in_single_precision() -> Vec<(&'static str, Engine<f32>)> {
         ("point-on-line", Engine::new(own::point_on_line::PointOnLine::default())),
         ("rod", Engine::new(own::rod::Rod::default())),
         ("screw", Engine::new(own::screw::Screw::default())),
+        ("stabilised-gimbal", Engine::new(shipped::stabilised_gimbal::StabilisedGimbal::default())),
         ("stops", Engine::new(own::stops::Stops::default())),
         ("tether", Engine::new(own::tether::Tether::default())),
         ("motor", Engine::new(own::motor::Motor::default())),

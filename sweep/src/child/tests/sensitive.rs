@@ -59,9 +59,9 @@ fn samples_of(job: &Job, row: &[f64]) -> [usize; 3] {
 /// The distance of differences, in parts of a target's scale.
 const APART: f64 = 2e-3;
 
-/// The derivative of a number, times the scale, from runs at −2, −1, 1 and 2 times h; NaN where there is no number. None
-/// where the differences of the inner and the outer two differ: over a scale that is far beyond the others' nothing is
-/// a line.
+/// The derivative of a number, times the scale, from runs at −2, −1, 1 and 2 times h; NaN where there is no number.
+/// None where the differences of the inner and the outer two differ: over a scale that is far beyond the others'
+/// nothing is a line.
 fn judged_slope(near: &[Vec<f64>], number: usize, h: f64, scale: f64) -> Option<f64> {
     let [a, b, c, d] = [0, 1, 2, 3].map(|k| near[k][number]);
     let [inner, outer] = [(c - b) / (2.0 * h), (d - a) / (4.0 * h)].map(|slope| slope * scale);
