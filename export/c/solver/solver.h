@@ -95,7 +95,7 @@ gyro_status gyro_solver_step(gyro_solver *s, const gyro *m, gyro_real h);
 /* One step under error control, at most to t_end. */
 gyro_status gyro_solver_step_towards(gyro_solver *s, const gyro *m, gyro_real t_end);
 
-/* Steps under error control to t_end. */
+/* Steps under error control to t_end. A time that is not later than the solver's is reached already: no step, GYRO_OK. */
 gyro_status gyro_solver_advance_to(gyro_solver *s, const gyro *m, gyro_real t_end);
 
 /* Closes the loops of the state now, for instance of a start. */

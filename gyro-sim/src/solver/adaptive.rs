@@ -24,7 +24,8 @@ pub(crate) struct Attempt<T> {
 }
 
 impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
-    /// Steps until `t_end`, each as long as the tolerances allow. The method must estimate its error; with another the
+    /// Steps until `t_end`, each as long as the tolerances allow. A time that is not later than the solver's is reached
+    /// already: it takes no step. The method must estimate its error; with another the
     /// program does not compile:
     /// ```compile_fail,E0080
     /// # use gyro_sim::{Kutta4, Ode, Solver};
