@@ -4,7 +4,7 @@ export const MODELS = [
   ['models/gyroscope-four-bar.toml', ['--t-end', '0.2', '--every', '0.002'], 0.02],
   ['models/pitching-gyroscope.toml', ['--t-end', '1'], 0.3],
   ['models/heavy-top.toml', ['--t-end', '1'], 0.3],
-  ['models/spinning-top.toml', ['--t-end', '1'], 0.75],
+  ['models/spinning-top.toml', ['--t-end', '1'], 0.1],
   ['models/free-body.toml', ['--t-end', '1'], 0.3],
   ['models/compound-pendulum.toml', ['--t-end', '2'], 0.37],
   ['models/torsion.toml', ['--t-end', '4'], 0.37],
@@ -14,7 +14,7 @@ export const MODELS = [
   ['models/double-wishbone.toml', ['--t-end', '1', '--every', '0.01'], 0.5],
   ['models/four-bar-bushing.toml', ['--t-end', '1', '--every', '0.01'], 0.3],
   ['examples/cart-pendulum/cart-pendulum.toml', ['--t-end', '2', '--every', '0.01'], 0.15],
-  ['examples/arm/arm.toml', ['--t-end', '2', '--every', '0.01'], 0.08],
+  ['examples/arm/arm.toml', ['--t-end', '0.4', '--every', '0.01', '--input', 'motor=-60'], 0.65],
   ['models/stabilised-gimbal.toml', ['--coordinates', 'joint'], 0.12],
 ];
 
