@@ -28,6 +28,17 @@ pub trait Forced<M = ()>: Ode<M> {
         forces: &[Self::Scalar],
         dy: &mut Self::State,
     );
+    /// The same, of which the slopes of the [rates](Forced::rates) alone are asked for: all else in `dy` may be anything.
+    fn accelerations(
+        &self,
+        model: &M,
+        t: Self::Scalar,
+        y: &Self::State,
+        forces: &[Self::Scalar],
+        dy: &mut Self::State,
+    ) {
+        self.forced(model, t, y, forces, dy);
+    }
     /// Whether friction may depend on reactions.
     const HAS_REACTIONS: bool = false;
     /// Writes for each contact the reaction, N, in the size of which its friction may grow: a vector that is affine in
@@ -93,13 +104,13 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
     {
         let zero = T::constant(0.0);
         let mut forces = [zero; N];
-        self.dynamics.forced(model, t, y, &forces, scratch);
+        self.dynamics.accelerations(model, t, y, &forces, scratch);
         let rates = self.contacts.map(|contact| contact.rate);
         let bias = rates.map(|rate| at(scratch.as_ref(), rate));
         let mut compliance = [[zero; N]; N];
         for k in (0..N).filter(|k| chosen[*k]) {
             forces[k] = T::constant(LARGE);
-            self.dynamics.forced(model, t, y, &forces, scratch);
+            self.dynamics.accelerations(model, t, y, &forces, scratch);
             forces[k] = zero;
             for (i, rate) in rates.into_iter().enumerate() {
                 compliance[i][k] = (at(scratch.as_ref(), rate) - bias[i]) / T::constant(LARGE);

@@ -36,6 +36,17 @@ impl<M: JointSpace + Clone, const N: usize> Forced<M> for JointInputs<N> {
     fn forced(&self, model: &M, t: M::Scalar, y: &M::Joints, forces: &[M::Scalar], dy: &mut M::Joints) {
         pushed(model, &self.inputs, forces).joint_derivative(t, y, dy);
     }
+
+    fn accelerations(
+        &self,
+        model: &M,
+        t: M::Scalar,
+        y: &M::Joints,
+        forces: &[M::Scalar],
+        dy: &mut M::Joints,
+    ) {
+        joint_accelerations(&pushed(model, &self.inputs, forces), t, y, dy);
+    }
 }
 
 /// The same, and friction may grow with reactions: with the force of an output of kind `reaction`, of the contact's
@@ -72,6 +83,17 @@ impl<M: JointSpace + Clone, const N: usize> Forced<M> for LoadedJointInputs<N> {
         JointInputs { inputs: self.inputs }.forced(model, t, y, forces, dy);
     }
 
+    fn accelerations(
+        &self,
+        model: &M,
+        t: M::Scalar,
+        y: &M::Joints,
+        forces: &[M::Scalar],
+        dy: &mut M::Joints,
+    ) {
+        JointInputs { inputs: self.inputs }.accelerations(model, t, y, forces, dy);
+    }
+
     fn reactions(
         &self,
         model: &M,
@@ -90,6 +112,14 @@ impl<M: JointSpace + Clone, const N: usize> Forced<M> for LoadedJointInputs<N> {
             }
         }
     }
+}
+
+/// Writes u̇ where the derivative of the joint state has it, and leaves all else as it is.
+pub fn joint_accelerations<M: JointSpace>(model: &M, t: M::Scalar, x: &M::Joints, dx: &mut M::Joints) {
+    let mut rates = model.joint_buffers().rates;
+    model.joint_accelerations(t, x, &mut rates);
+    let places = dx.as_mut().iter_mut().skip(model.joint_layout().n_coordinates());
+    places.zip(rates.as_ref()).for_each(|(place, rate)| *place = *rate);
 }
 
 /// The mechanism under these forces.

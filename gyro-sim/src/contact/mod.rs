@@ -90,7 +90,7 @@ mod stepped;
 
 pub use equations::{Contacts, Forced, Kept};
 pub use hybrid::Hybrid;
-pub use joint::{JointInputs, LoadedJointInputs};
+pub use joint::{JointInputs, LoadedJointInputs, joint_accelerations};
 pub use settle::{Change, Record};
 pub use stepped::Stepped;
 

@@ -9,7 +9,7 @@ use super::course::Course;
 use super::lens::{Lens, Moving, MovingInputs};
 use crate::Input;
 use crate::touch::Touch;
-use gyro_sim::contact::Forced;
+use gyro_sim::contact::{Forced, joint_accelerations};
 use gyro_sim::{Clearance, Correction, Error, Jacobian, Joint, JointSpace, Mechanism, Ode, Scalar};
 use std::cell::{Ref, RefCell};
 use std::ops::Range;
@@ -151,6 +151,20 @@ impl<M: JointSpace<Joints: 'static> + 'static> Forced<M> for Fed<Joint, M> {
         let Some(feed) = &self.feed else { return self.derivative(mechanism, t, x, dx) };
         let mechanism = feed.under(t, forces);
         self.lens.derivative(&*mechanism, t, x, dx);
+    }
+
+    fn accelerations(
+        &self,
+        mechanism: &M,
+        t: M::Scalar,
+        x: &M::Joints,
+        forces: &[M::Scalar],
+        dx: &mut M::Joints,
+    ) {
+        match &self.feed {
+            None => joint_accelerations(mechanism, t, x, dx),
+            Some(feed) => joint_accelerations(&*feed.under(t, forces), t, x, dx),
+        }
     }
 
     fn reactions(
