@@ -31,7 +31,7 @@ impl Inputs<'_> {
     }
 
     /// Sets those of the rows of a pack.
-    fn set<M: JointSpace>(self, mechanism: &mut M, rows: &[usize; 8])
+    fn set<M: JointSpace>(self, mechanism: &mut M, pack: Pack)
     where
         M::Scalar: Lanes<Lane = f64>,
     {
@@ -39,30 +39,53 @@ impl Inputs<'_> {
         for index in 0..n {
             let value = M::Scalar::from_lanes(|lane| match self {
                 Self::Same(values) => values[index],
-                Self::Own(values) => values[rows[lane] * n + index],
+                Self::Own(values) => values[pack.row(lane) * n + index],
             });
             mechanism.set_input(index, value);
         }
     }
 }
 
-/// The rows of each pack, and how many of them are to be stored.
-fn packs<T: Lanes>(n_rows: usize) -> impl Iterator<Item = ([usize; 8], usize)> {
-    (0..n_rows).step_by(T::COUNT).map(move |first| {
-        (std::array::from_fn(|lane| (first + lane).min(n_rows - 1)), T::COUNT.min(n_rows - first))
-    })
+/// Rows whose states are the lanes of one pack.
+#[derive(Clone, Copy)]
+struct Pack {
+    first: usize,
+    /// The batch's last row.
+    last: usize,
 }
 
-fn gather<T: Lanes<Lane = f64>>(to: &mut [T], rows: &[usize; 8], numbers: &[f64]) {
-    let n = to.len();
-    for (place, to) in to.iter_mut().enumerate() {
-        *to = T::from_lanes(|lane| numbers[rows[lane] * n + place]);
+impl Pack {
+    const FIRST: Self = Self { first: 0, last: 0 };
+
+    /// The packs of so many rows.
+    fn of<T: Lanes>(n_rows: usize) -> impl Iterator<Item = Self> {
+        (0..n_rows).step_by(T::COUNT).map(move |first| Self { first, last: n_rows - 1 })
+    }
+
+    /// The row of a lane.
+    #[inline(always)]
+    fn row(self, lane: usize) -> usize {
+        (self.first + lane).min(self.last)
     }
 }
 
-fn scatter<T: Lanes<Lane = f64>>(from: &[T], (first, count): (usize, usize), numbers: &mut [f64]) {
-    for (lane, to) in numbers.chunks_exact_mut(from.len()).skip(first).take(count).enumerate() {
-        for (to, from) in to.iter_mut().zip(from) {
+/// Reads the rows of a pack. Each row is found once, not each of its numbers: that would cost as much as a short kernel.
+fn gather<T: Lanes<Lane = f64>>(to: &mut [T], pack: Pack, numbers: &[f64]) {
+    let n = to.len();
+    let rows: [&[f64]; 8] = std::array::from_fn(|lane| match lane < T::COUNT {
+        true => &numbers[pack.row(lane) * n..][..n],
+        false => &[],
+    });
+    for (place, to) in to.iter_mut().enumerate() {
+        *to = T::from_lanes(|lane| rows[lane][place]);
+    }
+}
+
+/// Writes them; of a pack that is not full its own rows alone.
+fn scatter<T: Lanes<Lane = f64>>(from: &[T], pack: Pack, numbers: &mut [f64]) {
+    let n = from.len();
+    for lane in 0..T::COUNT.min(pack.last + 1 - pack.first) {
+        for (to, from) in numbers[pack.row(lane) * n..][..n].iter_mut().zip(from) {
             *to = from.lane(lane);
         }
     }
@@ -84,17 +107,17 @@ pub fn accelerations<M: JointSpace>(
     let (n_x, n_u) = (mechanism.joint_layout().n_coordinates(), mechanism.joint_layout().n_rates());
     let (mut state, mut rates) = (mechanism.joint_start(), mechanism.joint_buffers().rates);
     if matches!(inputs, Inputs::Same(_)) {
-        inputs.set(mechanism, &[0; 8]);
+        inputs.set(mechanism, Pack::FIRST);
     }
-    for (rows, count) in packs::<M::Scalar>(out.len() / n_u.max(1)) {
+    for pack in Pack::of::<M::Scalar>(out.len() / n_u.max(1)) {
         if matches!(inputs, Inputs::Own(_)) {
-            inputs.set(mechanism, &rows);
+            inputs.set(mechanism, pack);
         }
         let (of_x, of_u) = state.as_mut().split_at_mut(n_x);
-        gather(of_x, &rows, x);
-        gather(&mut of_u[..n_u], &rows, u);
+        gather(of_x, pack, x);
+        gather(&mut of_u[..n_u], pack, u);
         mechanism.joint_accelerations(M::Scalar::constant(t), &state, &mut rates);
-        scatter(rates.as_ref(), (rows[0], count), out);
+        scatter(rates.as_ref(), pack, out);
     }
 }
 
@@ -116,20 +139,20 @@ pub fn advance<M: JointSpace>(
     let mut state = mechanism.joint_start();
     let mut method = Rk4::new(&state);
     if matches!(inputs, Inputs::Same(_)) {
-        inputs.set(mechanism, &[0; 8]);
+        inputs.set(mechanism, Pack::FIRST);
     }
-    for (rows, count) in packs::<M::Scalar>(states.len() / n.max(1)) {
+    for pack in Pack::of::<M::Scalar>(states.len() / n.max(1)) {
         if matches!(inputs, Inputs::Own(_)) {
-            inputs.set(mechanism, &rows);
+            inputs.set(mechanism, pack);
         }
         let (own, work) = state.as_mut().split_at_mut(n);
-        gather(own, &rows, states);
+        gather(own, pack, states);
         work.fill(M::Scalar::constant(0.0));
         for step in steps.clone() {
             #[expect(clippy::cast_precision_loss, reason = "step numbers stay below 2⁵³")]
             let t = M::Scalar::constant(from + step as f64 * h);
             method.step(&Joint, mechanism, t, M::Scalar::constant(h), &mut state);
         }
-        scatter(&state.as_ref()[..n], (rows[0], count), states);
+        scatter(&state.as_ref()[..n], pack, states);
     }
 }
