@@ -1,6 +1,7 @@
 //! The forms of u̇, the derivatives of the rates, that are compared.
 
 use super::axis_dynamics::AxisTree;
+use super::axis_loops;
 use super::coordinates::Coordinates;
 use super::dynamics::{self, JointDynamics, MAX_FACTORED, NORMAL_FORM};
 use super::planar;
@@ -54,7 +55,11 @@ impl Candidates {
         }
         let n_in_bodies = eliminated.len();
         if let Some(tree) = AxisTree::new(system, coordinates, &coordinates.invariant) {
-            eliminated.extend(tree.forms(system));
+            if coordinates.closure.rows.is_empty() {
+                eliminated.extend(tree.forms(system));
+            } else if axis_loops::is_small(&tree, coordinates) {
+                eliminated.push((axis_loops::WITH_ROWS, axis_loops::accelerations(system, &tree, coordinates)));
+            }
         }
         let written = expanded(system, &coordinates.in_joints, &eliminated);
         let in_bodies = (embedding.n_unknowns <= MAX_FACTORED).then(|| written[..n_in_bodies].to_vec());

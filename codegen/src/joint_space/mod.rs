@@ -19,6 +19,7 @@ mod axis_derivatives;
 mod axis_dynamics;
 mod axis_frames;
 mod axis_inverse;
+mod axis_loops;
 mod candidates;
 mod choose;
 mod closing_units;
