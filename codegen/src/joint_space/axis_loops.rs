@@ -63,7 +63,8 @@ pub fn accelerations(system: &mut System, tree: &AxisTree, coordinates: &Coordin
     let mut entries = tree.mass_matrix(&mut system.graph);
     let mut at = n;
     for row in groups.iter().flat_map(|group| &group.rows) {
-        let entry = |(unknown, &entry): (usize, &ExprId)| (entry != Graph::ZERO).then_some(((at, unknown), entry));
+        let entry =
+            |(unknown, &entry): (usize, &ExprId)| (entry != Graph::ZERO).then_some(((at, unknown), entry));
         entries.extend(row.jacobian.iter().enumerate().filter_map(entry));
         forces.push(row.gamma);
         at += 1;
@@ -149,8 +150,8 @@ impl Closed<'_> {
         Row { jacobian: self.tree.embedding.projected(&mut system.graph, &jacobian), gamma }
     }
 
-    /// The rows of a ball joint as the body on the shorter way to where both ways meet sees them, and that body's
-    /// segment. `None` if it stands on the ground, or if a body is seen from a frame that does not turn with it.
+    /// The rows of a ball joint as the body on the shorter way to the ground sees them, and that body's segment. `None` if
+    /// both stand on the ground, if that moves, or if a body is seen from a frame that does not turn with it.
     fn ball(&self, system: &mut System, joint: usize) -> Option<(Vec<Row>, usize)> {
         let description = &system.model.joints[joint];
         if description.kind != JointKind::Spherical {
@@ -158,11 +159,13 @@ impl Closed<'_> {
         }
         let bodies = [description.first.body, description.second.body];
         let frames = system.joints[joint];
-        let mut ends = [(bodies[0], frames.first.point), (bodies[1], frames.second.point)].map(|(body, point)| {
-            let moving_body = system.moving_body_of(body);
-            let is_at = |segment: &Segment| moving_body.is_some() && segment.station.moving_body == moving_body;
-            (self.tree.segments.iter().position(is_at), body, point)
-        });
+        let mut ends =
+            [(bodies[0], frames.first.point), (bodies[1], frames.second.point)].map(|(body, point)| {
+                let moving_body = system.moving_body_of(body);
+                let is_at =
+                    |segment: &Segment| moving_body.is_some() && segment.station.moving_body == moving_body;
+                (self.tree.segments.iter().position(is_at), body, point)
+            });
         let holds = |end: &(Option<usize>, usize, Vec3)| match end.0 {
             Some(segment) => self.way(segment).all(|at| self.holds_frame(system, at)),
             None => system.model.bodies[end.1].support == Support::Fixed,
@@ -170,8 +173,10 @@ impl Closed<'_> {
         if !ends.iter().all(holds) {
             return None;
         }
-        let length = |end: Option<usize>| end.map_or(usize::MAX, |segment| self.way(segment).count());
-        if length(ends[1].0) < length(ends[0].0) {
+        let distance =
+            |end: Option<usize>| end.map(|segment| (self.floats(segment), self.way(segment).count()));
+        let [first, second] = ends.map(|end| distance(end.0));
+        if second.is_some_and(|second| first.is_none_or(|first| second < first)) {
             ends.swap(0, 1);
         }
         let [(Some(near), _, near_point), (far, _, far_point)] = ends else { return None };
@@ -195,14 +200,9 @@ impl Closed<'_> {
             other = by.turned(graph, &other);
         }
         if meet.is_none() {
-            let falls = |end: Option<usize>| {
-                end.and_then(|end| self.way(end).last()).is_some_and(|root| {
-                    matches!(self.tree.segments[root].station.freedom, Freedom::Whole { .. })
-                })
-            };
             let gravity = system.numbers(&system.model.gravity);
             let graph = &mut system.graph;
-            match (falls(Some(near)), falls(far)) {
+            match (self.floats(near), far.is_some_and(|far| self.floats(far))) {
                 (true, false) => other = graph.sub_vec(&other, &gravity),
                 (false, true) => other = graph.add_vec(&other, &gravity),
                 _ => {}
@@ -243,6 +243,12 @@ impl Closed<'_> {
     /// From a segment to its root.
     fn way(&self, segment: usize) -> impl Iterator<Item = usize> {
         std::iter::successors(Some(segment), |&at| self.tree.segments[at].station.parent)
+    }
+
+    /// Whether nothing holds the root of a segment.
+    fn floats(&self, segment: usize) -> bool {
+        let root = self.way(segment).last();
+        root.is_some_and(|root| matches!(self.tree.segments[root].station.freedom, Freedom::Whole { .. }))
     }
 
     /// Whether a segment's frame turns with it, and whether it stands on ground that is at rest.
@@ -324,16 +330,16 @@ impl Closed<'_> {
         let leg: Vec<_> = self.way(segment).take_while(is_own).collect();
         let freedom = |at: usize| self.tree.segments[at].station.freedom;
         let is_free = |at: usize| !self.tree.segments[at].free.is_empty();
-        let Some(slide) = leg.iter().position(|&at| is_free(at) && matches!(freedom(at), Freedom::Slide(_))) else {
+        let Some(slide) = leg.iter().position(|&at| is_free(at) && matches!(freedom(at), Freedom::Slide(_)))
+        else {
             return false;
         };
         leg[slide + 1..].iter().any(|&at| {
             let is_turn = |at: usize| is_free(at) && matches!(freedom(at), Freedom::Turn { .. });
             let within = |parent: usize| self.tree.segments[parent].station.moving_body.is_none();
-            let is_universal = self.tree.segments[at]
-                .station
-                .parent
-                .is_some_and(|parent| leg.contains(&parent) && is_turn(at) && is_turn(parent) && within(parent));
+            let is_universal = self.tree.segments[at].station.parent.is_some_and(|parent| {
+                leg.contains(&parent) && is_turn(at) && is_turn(parent) && within(parent)
+            });
             matches!(freedom(at), Freedom::Ball(_)) || is_universal
         })
     }
