@@ -46,7 +46,7 @@ pub(super) struct Segment {
     /// At constant rates.
     pub motion: Motion,
     /// What acts on it besides gravity, less what constant rates take.
-    load: SpatialVector,
+    pub load: SpatialVector,
     /// The acceleration that constant rates force upon it, its carrier turning at a constant rate.
     forced: SpatialVector,
     /// The same load, less what it takes to turn at a constant rate.
@@ -201,6 +201,8 @@ impl AxisTree {
                 }
             }
             forms.push(("recursion in joint frames from constant rates", from_rates));
+        } else {
+            forms.push(("recursion in joint frames from constant rates", self.recursion_of_shared(system)));
         }
         forms.extend(by_matrix.map(|by_matrix| ("mass matrix in joint frames", by_matrix)));
         forms
