@@ -1,5 +1,5 @@
-//! The accelerations of the joint coordinates of a mechanism with loops, in frames that suit its joints: the mass matrix
-//! of its tree and the rows of the joints that close loops are one sparse symmetric system,
+//! The accelerations of the joint coordinates of a mechanism with loops, in frames that suit its joints: the mass
+//! matrix of its tree and the rows of the joints that close loops are one sparse symmetric system,
 //!
 //! ```text
 //! [ M  Jᵀ ] [  z ]   [ f ]
@@ -45,7 +45,7 @@ struct Group {
 struct Closed<'a> {
     tree: &'a AxisTree,
     coordinates: &'a Coordinates,
-    /// Of each segment, its acceleration if all unknowns are zero, gravity and that of its carrier's origin left out.
+    /// Of each rate of the tree, its acceleration if all unknowns are zero.
     biases: Vec<ExprId>,
 }
 
@@ -150,8 +150,8 @@ impl Closed<'_> {
         Row { jacobian: self.tree.embedding.projected(&mut system.graph, &jacobian), gamma }
     }
 
-    /// The rows of a ball joint as the body on the shorter way to the ground sees them, and that body's segment. `None` if
-    /// both stand on the ground, if that moves, or if a body is seen from a frame that does not turn with it.
+    /// The rows of a ball joint as the body on the shorter way to the ground sees them, and that body's segment. `None`
+    /// if both stand on the ground, if that moves, or if a body is seen from a frame that does not turn with it.
     fn ball(&self, system: &mut System, joint: usize) -> Option<(Vec<Row>, usize)> {
         let description = &system.model.joints[joint];
         if description.kind != JointKind::Spherical {

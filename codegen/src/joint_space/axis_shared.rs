@@ -1,7 +1,7 @@
-//! The accelerations of a tree in which several joints follow one unknown (gears), by elimination from the leaves to the
-//! roots in frames that suit its joints. What a shared unknown takes is carried on towards the root as a wrench, and the
-//! unknown is eliminated as soon as all its joints have been passed (joints that move together are one aggregate joint:
-//! A. Jain, *Multibody graph transformations and analysis, Part II*, Nonlinear Dynamics 67 (2012)).
+//! The accelerations of a tree in which several joints follow one unknown (gears), by elimination from the leaves to
+//! the roots in frames that suit its joints. What a shared unknown takes is carried on towards the root as a wrench,
+//! and the unknown is eliminated as soon as all its joints have been passed (joints that move together are one
+//! aggregate joint: A. Jain, *Multibody graph transformations and analysis, Part II*, Nonlinear Dynamics 67 (2012)).
 
 use super::articulated_inertia::{ArticulatedInertia, Released};
 use super::axis_dynamics::{AxisTree, Segment};

@@ -361,7 +361,8 @@ mod tests {
             let first = &joints[(seed as usize + place) % place];
             let ratio = ["2", "-1.5", "0.5"][(place + seed as usize) % 3];
             text += &format!(
-                "[[coupler]]\nname = \"c{place}\"\nfirst = {{ joint = \"{first}\" }}\nsecond = {{ joint = \"{second}\" }}\n\
+                "[[coupler]]\nname = \"c{place}\"\nfirst = {{ joint = \"{first}\" }}\n\
+                 second = {{ joint = \"{second}\" }}\n\
                  ratio = {ratio}\n"
             );
         }
@@ -375,8 +376,8 @@ mod tests {
         assert!(n_geared > 10, "{n_geared} trees have gears");
     }
 
-    /// A plate on three to six legs, made of dice: on the ground or on a table that moves, on universal and ball joints,
-    /// joints named from either end; the plate may carry something. At the start all legs are upright.
+    /// A plate on three to six legs, made of dice: on the ground or on a table that moves, on universal and ball
+    /// joints, joints named from either end; the plate may carry something. At the start all legs are upright.
     fn platform(seed: u64) -> String {
         let mut draws = 0..;
         let mut die = |sides: usize| {
@@ -408,7 +409,8 @@ mod tests {
         let joint = |name: String, kind: &str, rest: &str, ends: [String; 2], reversed: bool| {
             let [first, second] = if reversed { [&ends[1], &ends[0]] } else { [&ends[0], &ends[1]] };
             format!(
-                "[[joint]]\nname = \"{name}\"\nkind = \"{kind}\"\n{rest}first = {{ {first} }}\nsecond = {{ {second} }}\n"
+                "[[joint]]\nname = \"{name}\"\nkind = \"{kind}\"\n{rest}first = {{ {first} }}\n\
+                 second = {{ {second} }}\n"
             )
         };
         for leg in 0..n_legs {
@@ -442,8 +444,10 @@ mod tests {
         }
         if die(2) > 0 {
             text += &format!(
-                "[[body]]\nname = \"load\"\nmass = 1\n{inertia}\n[[joint]]\nname = \"hinge\"\nkind = \"revolute\"\naxis = [1, 2, 2]\n\
-                 zero = [2, 1, -2]\nfirst = {{ body = \"plate\" }}\nsecond = {{ body = \"load\", point = [0.1, 0.2, 0.3] }}\n"
+                "[[body]]\nname = \"load\"\nmass = 1\n{inertia}\n[[joint]]\nname = \"hinge\"\n\
+                 kind = \"revolute\"\naxis = [1, 2, 2]\n\
+                 zero = [2, 1, -2]\nfirst = {{ body = \"plate\" }}\n\
+                 second = {{ body = \"load\", point = [0.1, 0.2, 0.3] }}\n"
             );
         }
         text
