@@ -358,8 +358,9 @@ mod tests {
         };
         let joints = with_one(&text);
         for (place, second) in joints.iter().enumerate().skip(1).filter(|(place, _)| place % 3 != 2) {
-            let first = &joints[(seed as usize + place) % place];
-            let ratio = ["2", "-1.5", "0.5"][(place + seed as usize) % 3];
+            let draw = usize::try_from(seed).expect("a small seed") + place;
+            let first = &joints[draw % place];
+            let ratio = ["2", "-1.5", "0.5"][draw % 3];
             text += &format!(
                 "[[coupler]]\nname = \"c{place}\"\nfirst = {{ joint = \"{first}\" }}\n\
                  second = {{ joint = \"{second}\" }}\n\
