@@ -61,13 +61,11 @@ pub fn accelerations(system: &mut System, tree: &AxisTree, coordinates: &Coordin
     let n = tree.embedding.n_unknowns;
     let mut forces = tree.constant_forces(&mut system.graph);
     let mut entries = tree.mass_matrix(&mut system.graph);
-    let mut at = n;
-    for row in groups.iter().flat_map(|group| &group.rows) {
+    for (at, row) in (n..).zip(groups.iter().flat_map(|group| &group.rows)) {
         let entry =
             |(unknown, &entry): (usize, &ExprId)| (entry != Graph::ZERO).then_some(((at, unknown), entry));
         entries.extend(row.jacobian.iter().enumerate().filter_map(entry));
         forces.push(row.gamma);
-        at += 1;
     }
     let mut elimination = Elimination::new(entries, forces);
     for unknown in closed.order(&groups) {

@@ -14,9 +14,8 @@ use crate::expr::symbol::Symbol;
 use crate::expr::vector::Vec3;
 use crate::simplify::cheapest::FinalPasses;
 use crate::simplify::normal_form::Reduction;
-use crate::solve::cancellation::{self, Trials};
+use crate::solve::cancellation::{self, Near, Trials};
 use crate::solve::gram_schmidt;
-use std::collections::BTreeMap;
 
 /// How far from the start coordinates of loops are tried: rad, or sizes of the mechanism.
 const NEAR: f64 = 0.3;
@@ -165,9 +164,9 @@ fn inaccurate(
 
 /// Where coordinates of loops are tried, with the distance from there: most states that are far from one with closed
 /// loops are none of the mechanism.
-fn near_start(system: &System, coordinates: &Coordinates, start: &[f64]) -> BTreeMap<usize, (f64, f64)> {
+fn near_start(system: &System, coordinates: &Coordinates, start: &[f64]) -> Near {
     if coordinates.closure.rows.is_empty() {
-        return BTreeMap::new();
+        return Near::new();
     }
     let scalars: Vec<_> = coordinates.layout.scalars().collect();
     let distance = |x: usize| {

@@ -45,6 +45,9 @@ pub fn may_matter(system: &mut System) -> bool {
     largest(&masses) > UNLIKE * least(&masses) || largest(&about_joints) > UNLIKE * least(&moments)
 }
 
+/// Of coordinates, by their places, a value and the largest distance from it.
+pub type Near = BTreeMap<usize, (f64, f64)>;
+
 /// States at which expressions are tried.
 #[derive(Debug)]
 pub struct Trials {
@@ -58,7 +61,7 @@ impl Trials {
         system: &System,
         roots: &[ExprId],
         angles: &BTreeSet<usize>,
-        (orientations, near): (&[[Symbol; 4]], &BTreeMap<usize, (f64, f64)>),
+        (orientations, near): (&[[Symbol; 4]], &Near),
     ) -> Self {
         let graph = &system.graph;
         let symbols: BTreeSet<_> = (graph.reachable(roots).into_iter())
