@@ -36,7 +36,7 @@ pub struct Tree {
     pub links: Vec<Link>,
     /// Joints that carry no body of a tree: they close loops, or are rods.
     pub loop_joints: Vec<usize>,
-    /// Bodies that only rods tie to a root: roots of trees of their own, placed by their own guess.
+    /// Bodies that only rods tie to a root, or that legs carry: roots of trees of their own, placed by their own guess.
     pub floating: Vec<usize>,
     /// Bodies that nothing connects to a root.
     pub unreached: Vec<usize>,
@@ -56,6 +56,9 @@ impl Tree {
     /// coordinates as little as possible is asked ([`Model::use_of_coordinates`]), and of those one that has many, so
     /// that few rows are left. A screw is cut like other joints where one angle says how far it has turned. Where no
     /// joint is cut it is the same tree in the same order.
+    ///
+    /// A body that three or more legs carry hangs on none of them: it floats, and the ball joints at the ends of all
+    /// legs are cut. A leg slides along what a universal or ball joint turns.
     pub fn of_coordinates(model: &Model) -> Self {
         let tree = Self::of(model);
         if tree.loop_joints.is_empty() {
@@ -75,16 +78,20 @@ impl Tree {
 
     fn by_use(model: &Model, of: impl Fn(usize) -> CoordinateUse) -> Self {
         let free = |joint: usize| u8::try_from(model.joints[joint].kind.n_free()).unwrap_or(u8::MAX);
+        let slides = |joint: usize| {
+            model.joints[joint].kind == JointKind::Prismatic && of(joint) != CoordinateUse::Prescribed
+        };
         if (0..model.joints.len()).all(|joint| of(joint) == CoordinateUse::None) {
-            return Self::along(model, |joint| if free(joint) <= 1 { 0 } else { free(joint) });
+            return Self::walked(model, |joint| if free(joint) <= 1 { 0 } else { free(joint) }, slides);
         }
         // A joint has at most five freedoms.
-        Self::along(model, |joint| match of(joint) {
+        let rank = |joint| match of(joint) {
             CoordinateUse::Prescribed => 0,
             CoordinateUse::Value => 1,
             CoordinateUse::Rate => 1 + free(joint).max(1),
             CoordinateUse::None => 7 + free(joint).max(1),
-        })
+        };
+        Self::walked(model, rank, slides)
     }
 
     /// How many angles of the tree lie between the bodies of a joint.
@@ -113,6 +120,11 @@ impl Tree {
     /// The same with another order of the joints: those of rank zero are walked breadth first; the others are followed
     /// one by one, lower ranks first and from bodies reached early, only where none of a lower rank leads on.
     pub(crate) fn along(model: &Model, rank: impl Fn(usize) -> u8) -> Self {
+        Self::walked(model, rank, |_| false)
+    }
+
+    /// The same, legs being made of joints that slide.
+    fn walked(model: &Model, rank: impl Fn(usize) -> u8, slides: impl Fn(usize) -> bool) -> Self {
         let mut walk = Walk::of(model);
         for (body, support) in model.bodies.iter().map(|body| body.support).enumerate() {
             match support {
@@ -124,7 +136,7 @@ impl Tree {
         }
         loop {
             walk.follow_all(|joint| model.joints[joint].kind.carries() && rank(joint) == 0);
-            if !(walk.follow_one(&rank) || walk.float_on_rod()) {
+            if !(walk.float_on_legs(&slides) || walk.follow_one(&rank) || walk.float_on_rod()) {
                 return walk.finish();
             }
         }
@@ -192,6 +204,38 @@ impl<'m> Walk<'m> {
         self.used[joint] = true;
         let reversed = self.model.joints[joint].second.body == parent;
         self.start(body, Some(Attachment::Joint { joint, parent, reversed }));
+    }
+
+    /// Whether a body could be reached that legs alone carry, three or more.
+    fn float_on_legs(&mut self, slides: impl Fn(usize) -> bool) -> bool {
+        let ways: Vec<_> = self.ways(JointKind::carries).collect();
+        let is_carried = |body: usize| {
+            let mut to = ways.iter().filter(|(.., to)| *to == body);
+            to.clone().count() >= 3 && to.all(|&(joint, from, _)| self.is_end_of_leg(joint, from, &slides))
+        };
+        let next = ways.iter().map(|&(.., body)| body).filter(|&body| is_carried(body)).min();
+        if let Some(body) = next {
+            self.tree.floating.push(body);
+            self.start(body, Some(Attachment::Free));
+        }
+        next.is_some()
+    }
+
+    /// Whether a joint is a ball at the end of a leg.
+    fn is_end_of_leg(&self, joint: usize, body: usize, slides: impl Fn(usize) -> bool) -> bool {
+        let carrier = |body: usize| {
+            self.tree.links.iter().find_map(|link| match link.attachment {
+                Attachment::Joint { joint, parent, .. } if link.body == body => Some((joint, parent)),
+                _ => None,
+            })
+        };
+        let kind = |joint: usize| self.model.joints[joint].kind;
+        let turns = |body: usize| {
+            carrier(body)
+                .is_some_and(|(joint, _)| matches!(kind(joint), JointKind::Universal | JointKind::Spherical))
+        };
+        kind(joint) == JointKind::Spherical
+            && carrier(body).is_some_and(|(joint, parent)| slides(joint) && turns(parent))
     }
 
     /// Whether a body could be reached over a rod.

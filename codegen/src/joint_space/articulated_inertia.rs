@@ -4,7 +4,7 @@ use super::mass_moments::MassMoments;
 use super::screw_moves::{Move, symmetric};
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::spatial_vector::SpatialVector;
-use crate::expr::vector::{Mat3, UNIT3, ZERO3, transposed};
+use crate::expr::vector::{Mat3, UNIT3, Vec3, ZERO3, transposed};
 
 #[derive(Clone, Copy, Debug)]
 pub struct ArticulatedInertia {
@@ -78,7 +78,7 @@ impl ArticulatedInertia {
     }
 
     /// What a unit acceleration takes.
-    fn column(&self, graph: &mut Graph, component: usize) -> SpatialVector {
+    pub fn column(&self, graph: &mut Graph, component: usize) -> SpatialVector {
         if component < 3 {
             let even = graph.scale_vec(self.mass, &UNIT3[component]);
             let t = graph.add_vec(&even, &self.linear[component]);
@@ -98,20 +98,7 @@ impl ArticulatedInertia {
             *column.component_mut(component) = Graph::ZERO;
         }
         let factor = column.scaled(graph, inverse);
-        let mut less = |m: &Mat3, u: &[ExprId; 3], v: &[ExprId; 3]| {
-            std::array::from_fn(|row| {
-                std::array::from_fn(|column| {
-                    let product = graph.mul(u[row], v[column]);
-                    graph.sub(m[row][column], product)
-                })
-            })
-        };
-        let mut rest = Self {
-            mass: self.mass,
-            linear: symmetric(&less(&self.linear, &factor.t, &column.t)),
-            coupling: less(&self.coupling, &factor.t, &column.rho),
-            angular: symmetric(&less(&self.angular, &factor.rho, &column.rho)),
-        };
+        let mut rest = self.less_product(graph, &factor, &column);
         if !is_free {
             // The component is resisted still.
         } else if component < 3 {
@@ -129,6 +116,29 @@ impl ArticulatedInertia {
         }
         (rest, Released { component, is_free, inverse, factor })
     }
+
+    /// What is left once an unknown is free that takes a wrench: `I − P Pᵀ / d`.
+    pub fn less(&self, graph: &mut Graph, wrench: &SpatialVector, inverse: ExprId) -> Self {
+        let factor = wrench.scaled(graph, inverse);
+        self.less_product(graph, &factor, wrench)
+    }
+
+    fn less_product(&self, graph: &mut Graph, factor: &SpatialVector, column: &SpatialVector) -> Self {
+        let mut less = |m: &Mat3, u: &Vec3, v: &Vec3| {
+            std::array::from_fn(|row| {
+                std::array::from_fn(|column| {
+                    let product = graph.mul(u[row], v[column]);
+                    graph.sub(m[row][column], product)
+                })
+            })
+        };
+        Self {
+            mass: self.mass,
+            linear: symmetric(&less(&self.linear, &factor.t, &column.t)),
+            coupling: less(&self.coupling, &factor.t, &column.rho),
+            angular: symmetric(&less(&self.angular, &factor.rho, &column.rho)),
+        }
+    }
 }
 
 /// A component of a twist that yields to loads.
@@ -138,7 +148,7 @@ pub struct Released {
     /// Whether nothing resists it once it has yielded.
     is_free: bool,
     /// Of what resists it.
-    inverse: ExprId,
+    pub inverse: ExprId,
     /// How much it yields to an acceleration of each other component.
     factor: SpatialVector,
 }
@@ -154,6 +164,17 @@ impl Released {
             *load.component_mut(self.component) = graph.neg(along);
         }
         graph.mul(driving, self.inverse)
+    }
+
+    /// What it takes of a wrench, which is left without what it yields to.
+    pub fn take(&self, graph: &mut Graph, wrench: &mut SpatialVector) -> ExprId {
+        let own = wrench.component(self.component);
+        let taken = self.factor.scaled(graph, own).negated(graph);
+        *wrench = wrench.plus(graph, &taken);
+        if self.is_free {
+            *wrench.component_mut(self.component) = Graph::ZERO;
+        }
+        own
     }
 
     /// How fast it accelerates, `share` being what it yields to loads, and all else moving so, to which its own is

@@ -1,4 +1,4 @@
-//! The accelerations of the joint coordinates of an open tree in frames that suit its joints, from base inertial
+//! The accelerations of the joint coordinates of a tree in frames that suit its joints, from base inertial
 //! parameters: by articulated bodies, or through the mass matrix of composite bodies.
 //!
 //! What all rates being constant would take is found first, as inverse dynamics (J. Luh, M. Walker and R. Paul (1980)),
@@ -44,9 +44,9 @@ pub(super) struct Segment {
     /// What acts on it besides gravity.
     pub applied: SpatialVector,
     /// At constant rates.
-    motion: Motion,
+    pub motion: Motion,
     /// What acts on it besides gravity, less what constant rates take.
-    load: SpatialVector,
+    pub load: SpatialVector,
     /// The acceleration that constant rates force upon it, its carrier turning at a constant rate.
     forced: SpatialVector,
     /// The same load, less what it takes to turn at a constant rate.
@@ -67,13 +67,11 @@ enum Start {
 }
 
 impl AxisTree {
-    /// `None` for a tree with loops, or with joints that are not made of turns and displacements.
+    /// `None` for a tree with joints that are not made of turns and displacements.
     /// The angles of `invariant`, by their places in x, do not turn frames.
     pub fn new(system: &mut System, coordinates: &Coordinates, invariant: &[usize]) -> Option<Self> {
         let Coordinates { embedding, layout, loads, .. } = coordinates;
-        let (links, turned) = (layout.links.as_slice(), |x: usize| !invariant.contains(&x));
-        let stations =
-            coordinates.closure.rows.is_empty().then(|| stations(system, links, &turned)).flatten()?;
+        let stations = stations(system, &layout.links, &|x| !invariant.contains(&x))?;
         let frames = frames(system, &stations);
         let biases = embedding.biases();
         let moments = base_parameters(system, &stations, &frames);
@@ -168,8 +166,7 @@ impl AxisTree {
 
     /// Through the mass matrix of composite bodies.
     fn by_mass_matrix(&self, system: &mut System) -> Vec<ExprId> {
-        let loads = self.segments.iter().map(|segment| segment.load).collect();
-        let forces = self.forces(&mut system.graph, loads);
+        let forces = self.constant_forces(&mut system.graph);
         let matrix = self.mass_matrix(&mut system.graph);
         let mut elimination = Elimination::new(matrix, forces);
         let graph = &mut system.graph;
@@ -204,6 +201,8 @@ impl AxisTree {
                 }
             }
             forms.push(("recursion in joint frames from constant rates", from_rates));
+        } else {
+            forms.push(("recursion in joint frames from constant rates", self.recursion_of_shared(system)));
         }
         forms.extend(by_matrix.map(|by_matrix| ("mass matrix in joint frames", by_matrix)));
         forms
@@ -243,6 +242,11 @@ impl AxisTree {
             }
         }
         taken
+    }
+
+    /// The same of all that acts, less what constant rates take.
+    pub(super) fn constant_forces(&self, graph: &mut Graph) -> Vec<ExprId> {
+        self.forces(graph, self.segments.iter().map(|segment| segment.load).collect())
     }
 
     /// What loads and the forces along them leave along each unknown for the rates to change.
@@ -314,7 +318,7 @@ impl AxisTree {
 
     /// The accelerations of all rates of the tree; those of a body that nothing holds in the global frame, with that of
     /// gravity.
-    fn of_tree(&self, system: &mut System, unknowns: &[ExprId]) -> Vec<ExprId> {
+    pub(super) fn of_tree(&self, system: &mut System, unknowns: &[ExprId]) -> Vec<ExprId> {
         let mut found = self.embedding.rates_of_rates(&mut system.graph, unknowns);
         let gravity = system.numbers(&system.model.gravity);
         for segment in &self.segments {

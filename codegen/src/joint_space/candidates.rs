@@ -1,8 +1,10 @@
 //! The forms of u̇, the derivatives of the rates, that are compared.
 
 use super::axis_dynamics::AxisTree;
+use super::axis_loops;
 use super::coordinates::Coordinates;
 use super::dynamics::{self, JointDynamics, MAX_FACTORED, NORMAL_FORM};
+use super::layout::LinkCoordinates;
 use super::planar;
 use crate::derive::system::System;
 use crate::effort::Effort;
@@ -12,8 +14,11 @@ use crate::expr::symbol::Symbol;
 use crate::expr::vector::Vec3;
 use crate::simplify::cheapest::FinalPasses;
 use crate::simplify::normal_form::Reduction;
-use crate::solve::cancellation::{self, Trials};
+use crate::solve::cancellation::{self, Near, Trials};
 use crate::solve::gram_schmidt;
+
+/// How far from the start coordinates of loops are tried: rad, or sizes of the mechanism.
+const NEAR: f64 = 0.3;
 
 /// A form of u̇ and what it is called, in symbols that are yet to be expanded.
 pub type Candidate = (&'static str, Vec<ExprId>);
@@ -54,7 +59,12 @@ impl Candidates {
         }
         let n_in_bodies = eliminated.len();
         if let Some(tree) = AxisTree::new(system, coordinates, &coordinates.invariant) {
-            eliminated.extend(tree.forms(system));
+            if coordinates.closure.rows.is_empty() {
+                eliminated.extend(tree.forms(system));
+            } else if axis_loops::is_small(&tree, coordinates) {
+                eliminated
+                    .push((axis_loops::WITH_ROWS, axis_loops::accelerations(system, &tree, coordinates)));
+            }
         }
         let written = expanded(system, &coordinates.in_joints, &eliminated);
         let in_bodies = (embedding.n_unknowns <= MAX_FACTORED).then(|| written[..n_in_bodies].to_vec());
@@ -81,8 +91,8 @@ impl Candidates {
     }
 
     /// Leaves out the forms that cancellation makes less accurate than Gram–Schmidt, or in large trees than the
-    /// recursion in the bodies' frames.
-    pub fn retain_accurate(&mut self, system: &mut System, coordinates: &Coordinates) {
+    /// recursion in the bodies' frames. `start` is the joint state at the start.
+    pub fn retain_accurate(&mut self, system: &mut System, coordinates: &Coordinates, start: &[f64]) {
         if !cancellation::may_matter(system) {
             return;
         }
@@ -94,7 +104,8 @@ impl Candidates {
         };
         let keeping = system.expanded(&coordinates.in_joints, keeping);
         let forms = expanded(system, &coordinates.in_joints, tried);
-        let losing = inaccurate(system, coordinates, &forms, &keeping, self.by_gram_schmidt.is_some());
+        let losing =
+            inaccurate(system, (coordinates, start), &forms, &keeping, self.by_gram_schmidt.is_some());
         let keeps = |(name, _): &Candidate| losing.iter().all(|losing| losing != name);
         self.eliminated.retain(keeps);
         self.eliminated_on_spins.retain(keeps);
@@ -128,7 +139,7 @@ fn expanded<'c>(
 /// The names of the forms of u̇ that are less accurate than `keeping`, which may be known to cancel nothing.
 fn inaccurate(
     system: &System,
-    coordinates: &Coordinates,
+    (coordinates, start): (&Coordinates, &[f64]),
     ways: &[(String, Vec<ExprId>)],
     keeping: &[ExprId],
     is_exact: bool,
@@ -139,7 +150,8 @@ fn inaccurate(
     let places = coordinates.layout.links.iter().filter_map(|link| link.orientation);
     let orientations: Vec<_> =
         places.map(|place| [0, 1, 2, 3].map(|k| Symbol::Coordinate(place.x + k))).collect();
-    let trials = Trials::draw(system, &all, &angles, &orientations);
+    let near = near_start(system, coordinates, start);
+    let trials = Trials::draw(system, &all, &angles, (&orientations, &near));
     let graph = &system.graph;
     let are_accurate = if is_exact {
         ways.iter().map(|(_, way)| trials.is_accurate(graph, way, keeping)).collect()
@@ -148,6 +160,23 @@ fn inaccurate(
     };
     let losing = ways.iter().zip(are_accurate).filter(|(_, is_accurate)| !is_accurate);
     losing.map(|((name, _), _)| name.clone()).collect()
+}
+
+/// Where coordinates of loops are tried, with the distance from there: most states that are far from one with closed
+/// loops are none of the mechanism.
+fn near_start(system: &System, coordinates: &Coordinates, start: &[f64]) -> Near {
+    if coordinates.closure.rows.is_empty() {
+        return Near::new();
+    }
+    let scalars: Vec<_> = coordinates.layout.scalars().collect();
+    let distance = |x: usize| {
+        let angle = scalars.iter().any(|scalar| scalar.place.x == x && scalar.kind.is_angle());
+        let is_orientation =
+            |link: &LinkCoordinates| link.orientation.is_some_and(|p| (p.x..p.x + 4).contains(&x));
+        let is_part = coordinates.layout.links.iter().any(is_orientation);
+        if angle || is_part { NEAR } else { NEAR * system.model.size() }
+    };
+    (0..coordinates.layout.n_coordinates).map(|x| (x, (start[x], distance(x)))).collect()
 }
 
 /// w' of each moving body as a maximal state has it, but of bodies whose frame does not turn with them.
@@ -230,17 +259,27 @@ mod tests {
         }
     }
 
-    /// Loops stay with the recursion in the bodies' frames; where joints follow others there is the mass matrix.
+    /// Where joints follow others there is the mass matrix, where loops are closed the rows beside it.
     #[test]
-    fn couplers_and_drivers_are_put_into_the_mass_matrix_and_loops_stay_as_they_are() {
+    fn couplers_drivers_and_rows_of_loops_are_put_into_the_mass_matrix() {
         for (page, n_forms) in [
-            (include_str!("../../../tests/models/gear.toml"), 1),
-            (include_str!("../../../tests/models/armature.toml"), 1),
-            (include_str!("../../../tests/models/differential.toml"), 1),
+            (include_str!("../../../tests/models/gear.toml"), 2),
+            (include_str!("../../../tests/models/armature.toml"), 2),
+            (include_str!("../../../tests/models/differential.toml"), 2),
             (include_str!("../../../tests/models/driven-shaft.toml"), 3),
-            (include_str!("../../../models/four-bar.toml"), 0),
+            (include_str!("../../../models/four-bar.toml"), 1),
+            (include_str!("../../../models/stewart-platform.toml"), 1),
+            (include_str!("../../../models/double-wishbone.toml"), 1),
+            (include_str!("../../../models/gyroscope-four-bar.toml"), 1),
+            (include_str!("../../../tests/models/carried-four-bar.toml"), 1),
+            (include_str!("../../../tests/models/spatial-slider-crank.toml"), 1),
+            (include_str!("../../../tests/models/peaucellier.toml"), 1),
+            (include_str!("../../../tests/models/rod.toml"), 1),
+            (include_str!("../../../tests/models/tether.toml"), 3),
+            (include_str!("../../../tests/models/driven-stewart.toml"), 1),
         ] {
             assert_eq!(check(page), n_forms, "{page}");
+            let _ = n_forms;
         }
     }
 
@@ -305,5 +344,117 @@ mod tests {
     #[test]
     fn frames_and_base_parameters_leave_accelerations_as_they_are_whatever_the_tree() {
         (0..16).for_each(|seed| assert!(check(&tree(seed)) >= 2));
+    }
+
+    /// The same with couplers: each geared joint follows one before it.
+    fn geared(seed: u64) -> String {
+        let mut text = tree(seed);
+        let with_one = |text: &String| -> Vec<String> {
+            let joints = text.split("[[joint]]").skip(1);
+            let joints =
+                joints.filter(|joint| joint.contains("\"revolute\"") || joint.contains("\"prismatic\""));
+            joints.map(|joint| joint.split('"').nth(1).expect("a joint has a name").to_owned()).collect()
+        };
+        let joints = with_one(&text);
+        for (place, second) in joints.iter().enumerate().skip(1).filter(|(place, _)| place % 3 != 2) {
+            let draw = usize::try_from(seed).expect("a small seed") + place;
+            let first = &joints[draw % place];
+            let ratio = ["2", "-1.5", "0.5"][draw % 3];
+            text += &format!(
+                "[[coupler]]\nname = \"c{place}\"\nfirst = {{ joint = \"{first}\" }}\n\
+                 second = {{ joint = \"{second}\" }}\n\
+                 ratio = {ratio}\n"
+            );
+        }
+        text
+    }
+
+    #[test]
+    fn joints_that_follow_others_are_carried_on_to_where_they_meet() {
+        let n_geared =
+            (0..40).map(geared).filter(|page| page.contains("[[coupler]]") && check(page) == 2).count();
+        assert!(n_geared > 10, "{n_geared} trees have gears");
+    }
+
+    /// A plate on three to six legs, made of dice: on the ground or on a table that moves, on universal and ball
+    /// joints, joints named from either end; the plate may carry something. At the start all legs are upright.
+    fn platform(seed: u64) -> String {
+        let mut draws = 0..;
+        let mut die = |sides: usize| {
+            let draw = draws.next().expect("without end");
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a die")]
+            let face = (f64::midpoint(sample(seed)(Symbol::Coordinate(draw)), 1.0) * sides as f64) as usize;
+            face.min(sides - 1)
+        };
+        let n_legs = 3 + die(4);
+        let inertia = "inertia = { xx = 0.5, yy = 0.6, zz = 0.7, xy = 0.01, xz = -0.02, yz = 0.03 }";
+        let mut text = String::from(
+            "format = 1\nname = \"platform\"\ngravity = [0.5, 1, -9.81]\n[[body]]\nname = \"base\"\n",
+        );
+        let table = [
+            "fixed = true\n".to_owned(),
+            format!("mass = 3\n{inertia}\n"),
+            format!("free = true\nmass = 3\n{inertia}\n"),
+        ];
+        let on = die(3);
+        text += &table[on];
+        if on == 1 {
+            let kind = ["revolute", "prismatic", "cylindrical"][die(3)];
+            text += &format!(
+                "[[body]]\nname = \"ground\"\nfixed = true\n[[joint]]\nname = \"table\"\nkind = \"{kind}\"\n\
+                 axis = [1, 2, 2]\nzero = [2, 1, -2]\nfirst = {{ body = \"ground\" }}\nsecond = {{ body = \"base\" }}\n"
+            );
+        }
+        text += &format!("[[body]]\nname = \"plate\"\nmass = 5\n{inertia}\n");
+        let joint = |name: String, kind: &str, rest: &str, ends: [String; 2], reversed: bool| {
+            let [first, second] = if reversed { [&ends[1], &ends[0]] } else { [&ends[0], &ends[1]] };
+            format!(
+                "[[joint]]\nname = \"{name}\"\nkind = \"{kind}\"\n{rest}first = {{ {first} }}\n\
+                 second = {{ {second} }}\n"
+            )
+        };
+        for leg in 0..n_legs {
+            let (x, y) = ([3, 1, -2, -3, -1, 2][leg], [1, 3, 2, -1, -3, -2][leg]);
+            let (x, y) = (f64::from(x) + 0.1 * die(9) as f64, f64::from(y) + 0.1 * die(9) as f64);
+            for part in ["cylinder", "piston"] {
+                let mass = 1 + die(3);
+                text += &format!("[[body]]\nname = \"{part}{leg}\"\nmass = {mass}\n{inertia}\n");
+            }
+            let (universal, rotated) = (die(3) > 0, die(2) > 0);
+            let (a, b) =
+                if rotated { ("[0.6, 0.8, 0]", "[-0.8, 0.6, 0]") } else { ("[1, 0, 0]", "[0, 1, 0]") };
+            let frames = |axis: &str, zero: &str| {
+                if universal { format!(", axis = {axis}, zero = {zero}") } else { String::new() }
+            };
+            let ends = [
+                format!("body = \"base\", point = [{x}, {y}, 0]{}", frames(a, b)),
+                format!("body = \"cylinder{leg}\", point = [0, 0, -0.4]{}", frames(b, a)),
+            ];
+            let kind = if universal { "universal" } else { "spherical" };
+            text += &joint(format!("foot{leg}"), kind, "", ends, false);
+            let ends = [format!("body = \"cylinder{leg}\""), format!("body = \"piston{leg}\"")];
+            let (displacement, reversed) = if die(2) > 0 { (1.1, false) } else { (-1.1, true) };
+            let rest = format!("axis = [0, 0, 1]\nzero = [1, 0, 0]\ndisplacement = {displacement}\n");
+            text += &joint(format!("slide{leg}"), "prismatic", &rest, ends, reversed);
+            let ends = [
+                format!("body = \"piston{leg}\", point = [0, 0, 0.5]"),
+                format!("body = \"plate\", point = [{x}, {y}, 0]"),
+            ];
+            text += &joint(format!("ball{leg}"), "spherical", "", ends, die(2) > 0);
+        }
+        if die(2) > 0 {
+            text += &format!(
+                "[[body]]\nname = \"load\"\nmass = 1\n{inertia}\n[[joint]]\nname = \"hinge\"\n\
+                 kind = \"revolute\"\naxis = [1, 2, 2]\n\
+                 zero = [2, 1, -2]\nfirst = {{ body = \"plate\" }}\n\
+                 second = {{ body = \"load\", point = [0.1, 0.2, 0.3] }}\n"
+            );
+        }
+        text
+    }
+
+    #[test]
+    fn legs_of_platforms_are_eliminated_wherever_they_stand() {
+        (0..16).for_each(|seed| assert_eq!(check(&platform(seed)), 1, "{}", platform(seed)));
     }
 }

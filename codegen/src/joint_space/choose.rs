@@ -74,7 +74,10 @@ impl JointSpace {
     ) -> Self {
         let passes = FinalPasses::of(false);
         let in_joints = &coordinates.in_joints;
-        candidates.retain_accurate(system, &coordinates);
+        let reduced = maps::reduced(system, &coordinates.layout, &coordinates.of_joints);
+        let reduced = Expansion::new(&system.definitions).all(&mut system.graph, &reduced);
+        let start = maps::joint_start(system, &coordinates.layout, &reduced, start);
+        candidates.retain_accurate(system, &coordinates, &start);
         let n_rates = coordinates.layout.n_rates;
         let of_state = |forms: &[(String, Vec<ExprId>)]| -> Vec<_> {
             forms.iter().map(|(name, rates)| (name.clone(), rates[..n_rates].to_vec())).collect()
@@ -114,8 +117,6 @@ impl JointSpace {
         let power = Power { along, others: observed.power_but_along_coordinates, multipliers: &lambda };
         let of_accelerations = power.at(system, &coordinates, &accelerations.roots);
         let derivative = rates.iter().copied().chain(of_accelerations).collect();
-        let reduced = maps::reduced(system, &coordinates.layout, &coordinates.of_joints);
-        let reduced = Expansion::new(&system.definitions).all(&mut system.graph, &reduced);
         let rates_of_rates: Vec<_> =
             (0..n_rates).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
         // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form
@@ -162,7 +163,7 @@ impl JointSpace {
             frames,
             on_request,
             maximal: maps::state(system, &coordinates.maximal, &coordinates.in_joints),
-            start: maps::joint_start(system, &coordinates.layout, &reduced, start),
+            start,
             reduced,
             layout: coordinates.layout,
         }

@@ -6,9 +6,10 @@
 //! maximal coordinates and back. `closure` has the rows of joints that close loops, `loops` how rates keep these
 //! closed, and `embedding` how all rates of the tree follow fewer unknowns. `coordinates` has all that is derived of
 //! them, and `forces` what acts along them. `dynamics` solves for the rates' rates in several ways, `planar` for those
-//! of planar mechanisms, `axis_dynamics` for those of open trees, seen as `elementary_joints`: in `axis_frames` that
+//! of planar mechanisms, `axis_dynamics` in frames of joints, seen as `elementary_joints`: in `axis_frames` that
 //! suit them, between which `screw_moves` lead, from the base inertial parameters among their `mass_moments`, with an
-//! `articulated_inertia` or a mass matrix; `axis_inverse` finds forces there, `axis_derivatives` how they change.
+//! `articulated_inertia` (in `axis_shared` where joints follow others) or a mass matrix, beside which `axis_loops` has
+//! the rows of loops; `axis_inverse` finds forces there, `axis_derivatives` how they change.
 //! These are the `candidates`, and `choose` takes the cheapest of those that are accurate, with what follows from it:
 //! `motions` of the bodies, `multipliers` and the `jacobian` of the joint form; `on_request` has what controllers of
 //! robots ask for, derivatives as `slopes`,
@@ -19,6 +20,8 @@ mod axis_derivatives;
 mod axis_dynamics;
 mod axis_frames;
 mod axis_inverse;
+mod axis_loops;
+mod axis_shared;
 mod candidates;
 mod choose;
 mod closing_units;

@@ -8,7 +8,7 @@ use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use gyro_model::{Number, to_f64};
 use rustc_hash::FxHashMap as HashMap;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// How many states are tried.
@@ -45,6 +45,9 @@ pub fn may_matter(system: &mut System) -> bool {
     largest(&masses) > UNLIKE * least(&masses) || largest(&about_joints) > UNLIKE * least(&moments)
 }
 
+/// Of coordinates, by their places, a value and the largest distance from it.
+pub type Near = BTreeMap<usize, (f64, f64)>;
+
 /// States at which expressions are tried.
 #[derive(Debug)]
 pub struct Trials {
@@ -53,12 +56,12 @@ pub struct Trials {
 
 impl Trials {
     /// For the symbols of these expressions; `angles` are the joint coordinates that are angles, and `orientations`
-    /// those that are Euler parameters.
+    /// those that are Euler parameters. Coordinates that are `near` a value are within a distance from it.
     pub fn draw(
         system: &System,
         roots: &[ExprId],
         angles: &BTreeSet<usize>,
-        orientations: &[[Symbol; 4]],
+        (orientations, near): (&[[Symbol; 4]], &Near),
     ) -> Self {
         let graph = &system.graph;
         let symbols: BTreeSet<_> = (graph.reachable(roots).into_iter())
@@ -73,6 +76,10 @@ impl Trials {
             let is_aligned = n.is_multiple_of(2);
             for (&symbol, value) in &mut values {
                 match symbol {
+                    Symbol::Coordinate(x) if near.contains_key(&x) => {
+                        let (middle, distance) = near[&x];
+                        *value = middle + distance * *value;
+                    }
                     Symbol::Coordinate(x) if angles.contains(&x) && is_aligned => {
                         *value = (2.0 * *value).round() * FRAC_PI_2;
                     }
@@ -198,7 +205,8 @@ mod tests {
         let difference = graph.sub(sum, sine);
         let square = graph.mul(moment, moment);
         let product = graph.div(square, moment);
-        let trials = Trials::draw(&system, &[difference, product, moment], &BTreeSet::new(), &[]);
+        let trials =
+            Trials::draw(&system, &[difference, product, moment], &BTreeSet::new(), (&[], &BTreeMap::new()));
         assert!(!trials.is_accurate(&system.graph, &[difference], &[moment]));
         assert!(trials.is_accurate(&system.graph, &[product], &[moment]));
     }

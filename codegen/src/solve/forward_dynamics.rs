@@ -199,7 +199,7 @@ fn accurate(system: &mut System, forms: Vec<Vec<ExprId>>, keeping: &[ExprId]) ->
     let keeping = expansion.all(&mut system.graph, keeping);
     let expanded: Vec<_> = forms.iter().map(|form| expansion.all(&mut system.graph, form)).collect();
     let all: Vec<_> = expanded.iter().flatten().chain(&keeping).copied().collect();
-    let trials = Trials::draw(system, &all, &BTreeSet::new(), &[]);
+    let trials = Trials::draw(system, &all, &BTreeSet::new(), (&[], &BTreeMap::new()));
     let forms = forms.into_iter().zip(expanded);
     forms
         .filter(|(_, form)| trials.is_accurate(&system.graph, form, &keeping))

@@ -3694,8 +3694,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FourBar<T> {
         let t18 = t17 * t17;
         let t19 = u0 * u0;
         let t20 = u1 * u1;
-        let t21 = T::fused(-t8, t18, T::fused(-t19, t14, t20 * t10));
-        let t22 = T::fused(-t11, t18, T::fused(-t19, t13, t20 * t7));
+        let t21 = T::fused(-t18, t8, T::fused(-t19, t14, t20 * t10));
+        let t22 = T::fused(-t18, t11, T::fused(-t19, t13, t20 * t7));
         let t23 = T::fused(t10, t21, t7 * t22);
         let t24 = T::fused(-t11, t14, t8 * t13);
         let t25 = k(0.0588) * t24;
@@ -4696,10 +4696,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for FourBar<T> {
         let t29 = T::fused(-t20, t9, t19 * t6);
         let t30 = T::fused(t12, t17, T::fused(-t21, t25, t29 * t28));
         let t31 = t30 * t22;
-        let t32 = t19 * t24;
+        let t32 = t24 * t19;
         let t33 = t16 * t9;
         let t34 = t33 + t32;
-        let t35 = t20 * t24;
+        let t35 = t24 * t20;
         let t36 = t16 * t6;
         let t37 = u1 * u1;
         let t38 = t37 * t11;

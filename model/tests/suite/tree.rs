@@ -151,3 +151,26 @@ fn driven_coordinates_of_trees_start_with_their_drivers() {
 fn model_freedom(model: &Model) -> usize {
     analyse(model).expect("a mechanism").degrees_of_freedom
 }
+
+/// What three legs carry floats; two legs, or three of which one does not slide, carry it as other joints do.
+#[test]
+fn a_platform_on_legs_floats() {
+    let legs = |n: usize| {
+        let mut joints = Vec::new();
+        for leg in 0..n {
+            let (cylinder, piston) = (2 + 2 * leg, 3 + 2 * leg);
+            joints.push(("universal", [0, cylinder]));
+            joints.push(("prismatic", [cylinder, piston]));
+            joints.push(("spherical", [piston, 1]));
+        }
+        page(1 + 2 * n, &joints)
+    };
+    let floating = |model: &Model| Tree::of_coordinates(model).floating;
+    assert_eq!(floating(&legs(3)), [1]);
+    assert_eq!(Tree::of_coordinates(&legs(3)).loop_joints, [2, 5, 8]);
+    assert!(floating(&legs(2)).is_empty());
+    assert!(Tree::of(&legs(3)).floating.is_empty());
+    let mut welded = legs(3);
+    welded.joints[4].kind = gyro_model::JointKind::Fixed;
+    assert!(floating(&welded).is_empty());
+}
