@@ -56,8 +56,6 @@ fn generate() -> std::io::Result<()> {
     let mut page = String::new();
     stdin().read_to_string(&mut page)?;
     let model = gyro_model::read("model.toml", &page).map_err(std::io::Error::other)?;
-    let all = gyro_codegen::Functions::all();
-    let module =
-        gyro_codegen::generate_functions("model.toml", &model, &all).map_err(std::io::Error::other)?;
+    let module = gyro_codegen::generate_model("model.toml", &model).map_err(std::io::Error::other)?;
     stdout().write_all(module.code.as_bytes())
 }
