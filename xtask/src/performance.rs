@@ -23,7 +23,7 @@ pub(crate) fn performance(args: &PerformanceArgs) -> Result<(), Failure> {
     fs::create_dir_all(folder()).map_err(|e| io_failure(&folder(), &e))?;
     let page = match args {
         PerformanceArgs { only_lanes: true, .. } => with_lanes(&page)?,
-        PerformanceArgs { only_chains: true, .. } => with_chains(&page, &built("performance", |_| ())?, args)?,
+        PerformanceArgs { only_chains: true, .. } => with_chains(&page, args)?,
         _ => with_lanes(&without_lanes(page, args)?)?,
     };
     let is_new = files::write(&path, &page)?;
@@ -41,7 +41,7 @@ fn without_lanes(mut page: String, args: &PerformanceArgs) -> Result<String, Fai
     page = replaced(&page, "kernels", &kernel_table(&kernels, counts.as_deref()))?;
     page = replaced(&page, "runs", &run_table(&runs))?;
     if args.bodies > 0 {
-        page = with_chains(&page, &program, args)?;
+        page = with_chains(&page, args)?;
     }
     Ok(page)
 }
@@ -50,8 +50,8 @@ fn with_lanes(page: &str) -> Result<String, Failure> {
     replaced(page, "lanes", &lanes::table()?)
 }
 
-fn with_chains(page: &str, program: &Path, args: &PerformanceArgs) -> Result<String, Failure> {
-    let [times, costs] = scaling::tables(program, args.bodies)?;
+fn with_chains(page: &str, args: &PerformanceArgs) -> Result<String, Failure> {
+    let [times, costs] = scaling::tables(args.bodies)?;
     replaced(&replaced(page, "chains", &times)?, "scaling", &costs)
 }
 

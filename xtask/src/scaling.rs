@@ -4,7 +4,7 @@ use gyro_cli::chain;
 use gyro_cli::failure::Failure;
 use gyro_cli::files;
 use gyro_cli::machine_code::{self, SYMBOLS};
-use gyro_cli::programs::{cargo, folder, io_failure, output, three};
+use gyro_cli::programs::{cargo, executable, folder, io_failure, output, three};
 use gyro_cli::progress::Spinner;
 use gyro_codegen::Kernel;
 use std::collections::BTreeMap;
@@ -44,10 +44,11 @@ struct Times {
 
 /// Measures chains of up to so many bodies; two tables in Markdown: what accelerations take, and what it takes to have
 /// them.
-pub(crate) fn tables(generator: &Path, most: usize) -> Result<[String; 2], Failure> {
+pub(crate) fn tables(most: usize) -> Result<[String; 2], Failure> {
+    let generator = generator()?;
     let sizes: Vec<usize> = SIZES.into_iter().filter(|&bodies| bodies <= most).collect();
     let place = Place { folder: folder().join("scaling") };
-    let mut chains = place.generate(generator, &sizes)?;
+    let mut chains = place.generate(&generator, &sizes)?;
     place.compile(&mut chains)?;
     place.run(&mut chains)?;
     let mut times = "| bodies | joint accelerations, ns | recursive, ns | ÷ recursive | accelerations of all bodies, ns | careful, ns | ÷ careful |\n\
@@ -75,7 +76,8 @@ impl Chain {
     }
 
     fn row_of_costs(&self) -> String {
-        let Self { bodies, flops: [of_joints, of_bodies], generation_s, release_s, debug_s, bytes, .. } = self;
+        let Self { bodies, flops: [of_joints, of_bodies], generation_s, release_s, debug_s, bytes, .. } =
+            self;
         let [joint, maximal] = bytes.map_or([(); 2].map(|()| String::new()), |b| b.map(|b| b.to_string()));
         let seconds =
             |taken: &Option<f64>| taken.map_or("not compiled".to_owned(), |taken| format!("{taken:.1}"));
@@ -84,6 +86,15 @@ impl Chain {
             "| {bodies} | {of_joints} | {of_bodies} | {generation_s:.2} | {release_s} | {debug_s} | {joint} | {maximal} |\n"
         )
     }
+}
+
+/// The generator, optimised, as a program that prints the module of a model file.
+fn generator() -> Result<PathBuf, Failure> {
+    let _spinner = Spinner::new("building the generator".to_owned());
+    let name = "print_module";
+    let mut command = Command::new(cargo());
+    command.args(["build", "--release", "--package", "gyro-codegen", "--example", name]);
+    executable(command.current_dir(files::root()), name)
 }
 
 /// A workspace of its own for the chains' crates and the program that runs them.
@@ -107,11 +118,9 @@ impl Place {
             let name = format!("chain_{bodies}");
             self.write(&format!("{name}/model.toml"), &chain::model_file(bodies))?;
             let page = self.folder.join(&name).join("model.toml");
-            let file = fs::File::open(&page).map_err(|e| io_failure(&page, &e))?;
             let before = children_cpu_s();
             let module = Command::new(generator)
-                .arg("--generate")
-                .stdin(file)
+                .arg(&page)
                 .stderr(Stdio::inherit())
                 .output()
                 .map_err(|e| io_failure(generator, &e))?;
@@ -123,7 +132,8 @@ impl Place {
             self.write(&format!("{name}/src/mechanism.rs"), &module)?;
             self.write(&format!("{name}/src/lib.rs"), &library(bodies))?;
             self.write(&format!("{name}/Cargo.toml"), &manifest(&name, &[("gyro-sim", "gyro-sim")], &[]))?;
-            let flops = [Kernel::JointAccelerations, Kernel::Accelerations].map(|kernel| flops(&module, kernel));
+            let flops =
+                [Kernel::JointAccelerations, Kernel::Accelerations].map(|kernel| flops(&module, kernel));
             chains.push(Chain {
                 bodies,
                 flops,
@@ -140,12 +150,7 @@ impl Place {
 
     fn write_program(&self, sizes: &[usize]) -> Result<(), Failure> {
         let names: Vec<String> = sizes.iter().map(|bodies| format!("chain_{bodies}")).collect();
-        let ours = [
-            ("gyro-sim", "gyro-sim"),
-            ("gyro-model", "model"),
-            ("gyro-assembled", "assembled"),
-            ("gyro-benches", "benches"),
-        ];
+        let ours = [("gyro-sim", "gyro-sim"), ("gyro-model", "model"), ("gyro-assembled", "assembled")];
         self.write("run/Cargo.toml", &manifest("run", &ours, &names))?;
         self.write("run/src/main.rs", &program(sizes))?;
         let members: Vec<&str> = names.iter().map(String::as_str).chain(["run"]).collect();
@@ -186,8 +191,9 @@ impl Place {
         for chain in chains {
             let library = built.join("release").join(format!("libchain_{}.rlib", chain.bodies));
             let of = |bytes: &BTreeMap<_, u64>, kernel| bytes.get(&kernel).copied().unwrap_or(0);
-            chain.bytes = machine_code::bytes(&library)
-                .map(|all| [Kernel::JointAccelerations, Kernel::Accelerations].map(|kernel| of(&all, kernel)));
+            chain.bytes = machine_code::bytes(&library).map(|all| {
+                [Kernel::JointAccelerations, Kernel::Accelerations].map(|kernel| of(&all, kernel))
+            });
         }
         Ok(())
     }
@@ -206,8 +212,7 @@ impl Place {
         let compiled = chains.iter_mut().filter(|chain| chain.release_s.is_some());
         for (chain, &figures) in compiled.zip(figures) {
             let [recursive, joint, joint_to_recursive, careful, maximal, maximal_to_careful] = figures;
-            let times =
-                Times { joint, recursive, joint_to_recursive, maximal, careful, maximal_to_careful };
+            let times = Times { joint, recursive, joint_to_recursive, maximal, careful, maximal_to_careful };
             chain.times = Some(times);
         }
         Ok(())
@@ -283,15 +288,26 @@ pub fn rates() -> Rates {{ Module::default().joint_buffers().rates }}
 /// Prints six numbers a chain: recursive and joint accelerations, ns, and the median of their ratios; the same of
 /// careful ones and those of all bodies. All agree, or it panics.
 fn program(sizes: &[usize]) -> String {
-    let mut text = "use gyro_assembled::{Careful, Recursive};
-use gyro_benches::{Clock, Kernel, interleaved};
+    let [kernel, round] =
+        ["kernel", "round"].map(|name| files::root().join("benches").join("src").join(format!("{name}.rs")));
+    let mut text = format!(
+        "#![allow(dead_code)]
+#[path = {kernel:?}]
+mod kernel;
+#[path = {round:?}]
+mod round;
+
+"
+    );
+    text += "use gyro_assembled::{Careful, Recursive};
+use kernel::Kernel;
+use round::{Clock, interleaved};
 use gyro_sim::{Dynamics, JointSpace, Mechanism};
 use std::hint::black_box;
 use std::time::Duration;
 
 fn main() {
-"
-    .to_owned();
+";
     for bodies in sizes {
         let _ = write!(
             text,
