@@ -1,5 +1,5 @@
-//! What is measured: something that is called over and over. The program of `cargo xtask performance` that runs chains has
-//! this file, too, without the rest of the crate.
+//! What is measured: something that is called over and over. The program by which `cargo xtask performance` runs chains
+//! has this file, too, without the rest of the crate.
 
 use std::fmt;
 

@@ -11,8 +11,8 @@ fn pendulums() -> Page {
     for k in 0..16 {
         let _ = write!(
             text,
-            "[[body]]\nname = \"b{k}\"\nmass = 1\ninertia = [3, 2, 4]\n[[joint]]\nname = \"j{k}\"\nkind = \"revolute\"\n\
-             axis = [0, 0, 1]\nzero = [1, 0, 0]\nfirst = {{ body = \"base\", point = [{k}, 0, 0] }}\n\
+            "[[body]]\nname = \"b{k}\"\nmass = 1\ninertia = [3, 2, 4]\n[[joint]]\nname = \"j{k}\"\n\
+             kind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\nfirst = {{ body = \"base\", point = [{k}, 0, 0] }}\n\
              second = {{ body = \"b{k}\", point = [-1, 0, 0] }}\n"
         );
     }
