@@ -2,11 +2,10 @@
 //!
 //! Prints one line for each kernel, its cells separated by tabs: what, who, flops, ns, ratio to the floor. `cargo xtask
 //! performance` makes the tables of docs/performance.md of it. With `--count` nothing is timed: each kernel is called
-//! [`CALLS`] times within a function that callgrind can be told, in the order of the lines. With `--generate` it turns
-//! the model file on standard input into a module on standard output, optimised as all of this is.
+//! [`CALLS`] times within a function that callgrind can be told, in the order of the lines.
 
 use gyro_benches::{Clock, Kernel, Scene, counted, interleaved, kernels, runs};
-use std::io::{IsTerminal, Read, Write, stderr, stdin, stdout};
+use std::io::{IsTerminal, Write, stderr, stdout};
 use std::time::Duration;
 
 /// Rounds of single kernels, and the time of one kernel in each.
@@ -22,9 +21,6 @@ const CALLS: u64 = 100;
 
 fn main() -> std::io::Result<()> {
     let is_asked = |option: &str| std::env::args().any(|argument| argument == option);
-    if is_asked("--generate") {
-        return generate();
-    }
     let scene = Scene::new();
     if is_asked("--count") {
         kernels(&scene).iter_mut().for_each(|kernel| counted(kernel, CALLS));
@@ -50,14 +46,4 @@ fn print(kernels: &mut [Kernel<'_>], rounds: usize, slice: (Duration, Clock)) ->
         writeln!(stdout(), "{what}\t{side}\t{flops}\t{:.2}\t{:.3}", figure.ns, figure.ratio)?;
     }
     Ok(())
-}
-
-fn generate() -> std::io::Result<()> {
-    let mut page = String::new();
-    stdin().read_to_string(&mut page)?;
-    let model = gyro_model::read("model.toml", &page).map_err(std::io::Error::other)?;
-    let all = gyro_codegen::Functions::all();
-    let module =
-        gyro_codegen::generate_functions("model.toml", &model, &all).map_err(std::io::Error::other)?;
-    stdout().write_all(module.code.as_bytes())
 }

@@ -1,13 +1,13 @@
 //! What is measured: one line for each kernel.
 
 use crate::data_sheet::DataSheet;
+use crate::kernel::Kernel;
 use crate::scene::Scene;
 use gyro_sim::{
     CorrectedDynamics, CorrectedSolution, Dynamics, Joint, JointSpace, Kinematics, Partition, Partitioned,
     Projection, Rk4,
 };
 use gyro_yardstick::{FLOPS, STEP};
-use std::fmt;
 use std::hint::black_box;
 
 /// The data sheets.
@@ -17,41 +17,6 @@ const MAXIMAL: DataSheet = DataSheet(include_str!("../../mechanisms/src/golden/g
 /// The paper's second: corrections, and steps between them.
 pub(crate) const CORRECTIONS: u32 = 2000;
 pub(crate) const STEPS_PER_CORRECTION: u32 = 5;
-
-/// Something to be measured.
-pub struct Kernel<'a> {
-    /// What it computes.
-    pub what: &'static str,
-    /// Who computes it.
-    pub side: &'static str,
-    /// Additions, multiplications and divisions, where they are known: + − × ÷ one each.
-    pub flops: Option<u64>,
-    /// Calls it so many times.
-    repeat: Box<dyn FnMut(u64) + 'a>,
-}
-
-impl fmt::Debug for Kernel<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}, {}", self.what, self.side)
-    }
-}
-
-impl<'a> Kernel<'a> {
-    /// A kernel that calls this.
-    pub fn new(
-        what: &'static str,
-        side: &'static str,
-        flops: Option<u64>,
-        mut call: impl FnMut() + 'a,
-    ) -> Self {
-        Self { what, side, flops, repeat: Box::new(move |times| (0..times).for_each(|_| call())) }
-    }
-
-    /// Calls it so many times.
-    pub fn repeat(&mut self, times: u64) {
-        (self.repeat)(times);
-    }
-}
 
 const JOINTS: &str = "joint accelerations in joint coordinates";
 const JOINTS_AT: &str = "joint accelerations from a corrected maximal state";

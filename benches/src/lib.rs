@@ -5,12 +5,14 @@
 //! same build. [`Scene::new`] checks all that is measured against the floor first: what is wrong is not fast.
 
 mod data_sheet;
+mod kernel;
 mod kernels;
 pub mod lanes;
 mod round;
 mod scene;
 
 pub use gyro_yardstick::Floor;
-pub use kernels::{Kernel, kernels, runs};
+pub use kernel::Kernel;
+pub use kernels::{kernels, runs};
 pub use round::{Clock, Figure, counted, interleaved};
 pub use scene::Scene;

@@ -1,6 +1,6 @@
 //! Measuring in turns: whatever slows the machine down for a while slows all kernels down alike.
 
-use crate::Kernel;
+use crate::kernel::Kernel;
 use std::time::{Duration, Instant};
 
 /// What was measured of a kernel.

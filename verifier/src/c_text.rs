@@ -65,6 +65,7 @@ fn compare(
         let (n, of) = (stored.len(), expected.len());
         return Err(Refusal::new(line, format!("`{name}` stores {n} numbers where the module gives {of}")));
     }
+    let stored = in_order(stored);
     let (mut array, mut next) = ("", Vec::new());
     for (n, (stored, expected)) in stored.iter().zip(expected).enumerate() {
         if stored.value != *expected {
@@ -85,6 +86,14 @@ fn compare(
         next = after(&stored.place);
     }
     Ok(())
+}
+
+/// What is stored, array for array, by its places: loops store in an order of their own.
+fn in_order(stored: &[Stored]) -> Vec<&Stored> {
+    let first = |array: &str| stored.iter().position(|other| other.array == array);
+    let mut sorted: Vec<_> = stored.iter().map(|stored| (first(&stored.array), stored)).collect();
+    sorted.sort_by(|(a, one), (b, other)| (a, &one.place).cmp(&(b, &other.place)));
+    sorted.into_iter().map(|(_, stored)| stored).collect()
 }
 
 /// The next place of an array; arrays of arrays have four columns.

@@ -8,6 +8,7 @@ mod lists;
 mod loops;
 mod matching;
 mod plain;
+mod results;
 mod skeleton;
 mod syntax;
 mod tables;

@@ -52,11 +52,14 @@ pub(crate) struct PerformanceArgs {
     #[arg(long, value_name = "FILE.md")]
     pub(crate) out: Option<PathBuf>,
     /// Number of bodies of the longest chain; 0 skips the chains and their table
-    #[arg(long, value_name = "N", default_value_t = 64)]
+    #[arg(long, value_name = "N", default_value_t = 256)]
     pub(crate) bodies: usize,
     /// Measure only packs of lanes and keep the other tables
     #[arg(long, conflicts_with = "bodies")]
     pub(crate) only_lanes: bool,
+    /// Measure only chains and keep the other tables
+    #[arg(long, conflicts_with = "only_lanes")]
+    pub(crate) only_chains: bool,
 }
 
 /// Run the firmware and write docs/embedded.md

@@ -21,8 +21,11 @@ pub(crate) fn performance(args: &PerformanceArgs) -> Result<(), Failure> {
     let path = args.out.clone().unwrap_or_else(|| files::root().join("docs").join("performance.md"));
     let page = files::read_template(&path)?;
     fs::create_dir_all(folder()).map_err(|e| io_failure(&folder(), &e))?;
-    let page = if args.only_lanes { page } else { without_lanes(page, args)? };
-    let page = replaced(&page, "lanes", &lanes::table()?)?;
+    let page = match args {
+        PerformanceArgs { only_lanes: true, .. } => with_lanes(&page)?,
+        PerformanceArgs { only_chains: true, .. } => with_chains(&page, args)?,
+        _ => with_lanes(&without_lanes(page, args)?)?,
+    };
     let is_new = files::write(&path, &page)?;
     eprintln!("{} {}", if is_new { "wrote" } else { "nothing new in" }, path.display());
     Ok(())
@@ -38,9 +41,18 @@ fn without_lanes(mut page: String, args: &PerformanceArgs) -> Result<String, Fai
     page = replaced(&page, "kernels", &kernel_table(&kernels, counts.as_deref()))?;
     page = replaced(&page, "runs", &run_table(&runs))?;
     if args.bodies > 0 {
-        page = replaced(&page, "scaling", &scaling::table(&program, args.bodies)?)?;
+        page = with_chains(&page, args)?;
     }
     Ok(page)
+}
+
+fn with_lanes(page: &str) -> Result<String, Failure> {
+    replaced(page, "lanes", &lanes::table()?)
+}
+
+fn with_chains(page: &str, args: &PerformanceArgs) -> Result<String, Failure> {
+    let [times, costs] = scaling::tables(args.bodies)?;
+    replaced(&replaced(page, "chains", &times)?, "scaling", &costs)
 }
 
 /// As benches/src/kernels.rs names whole runs.

@@ -4,61 +4,97 @@ use gyro_cli::chain;
 use gyro_cli::failure::Failure;
 use gyro_cli::files;
 use gyro_cli::machine_code::{self, SYMBOLS};
-use gyro_cli::programs::{cargo, folder, io_failure, output, three};
+use gyro_cli::programs::{cargo, executable, folder, io_failure, output, three};
 use gyro_cli::progress::Spinner;
 use gyro_codegen::Kernel;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// Numbers of bodies.
-const SIZES: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
+const SIZES: [usize; 9] = [1, 2, 4, 8, 16, 32, 64, 128, 256];
 
 /// What one chain takes.
 struct Chain {
     bodies: usize,
-    flops: String,
+    /// Operations of the accelerations in joint coordinates, and of all bodies.
+    flops: [String; 2],
     generation_s: f64,
     /// None where rustc fails, or is ended.
     release_s: Option<f64>,
     debug_s: Option<f64>,
-    bytes: Option<u64>,
-    /// Accelerations: generated, recursive, careful; not of what rustc has not compiled.
-    ns: Option<[f64; 3]>,
+    /// Of the accelerations in joint coordinates, and of all bodies.
+    bytes: Option<[u64; 2]>,
+    /// Not of what rustc has not compiled.
+    times: Option<Times>,
 }
 
-/// Measures chains of up to so many bodies; a table in Markdown.
-pub(crate) fn table(generator: &Path, most: usize) -> Result<String, Failure> {
+/// What accelerations take, ns, and medians of ratios.
+#[derive(Clone, Copy)]
+struct Times {
+    joint: f64,
+    recursive: f64,
+    joint_to_recursive: f64,
+    maximal: f64,
+    careful: f64,
+    maximal_to_careful: f64,
+}
+
+/// Measures chains of up to so many bodies; two tables in Markdown: what accelerations take, and what it takes to have
+/// them.
+pub(crate) fn tables(most: usize) -> Result<[String; 2], Failure> {
+    let generator = generator()?;
     let sizes: Vec<usize> = SIZES.into_iter().filter(|&bodies| bodies <= most).collect();
     let place = Place { folder: folder().join("scaling") };
-    let mut chains = place.generate(generator, &sizes)?;
+    let mut chains = place.generate(&generator, &sizes)?;
     place.compile(&mut chains)?;
     place.run(&mut chains)?;
-    let mut text = "| bodies | flops | flops a body | generated, ns | assembled, recursive, ns | assembled, careful, ns | generation, s | rustc \
-                    release, s | rustc debug, s | machine code, bytes |\n"
+    let mut times = "| bodies | joint accelerations, ns | recursive, ns | ÷ recursive | accelerations of all bodies, ns | careful, ns | ÷ careful |\n\
+                     |---|---|---|---|---|---|---|\n"
         .to_owned();
-    text += "|---|---|---|---|---|---|---|---|---|---|\n";
+    let mut costs = "| bodies | flops, joint accelerations | of all bodies | generation, s | rustc release, s | rustc debug, s | machine code, \
+                     joint accelerations, bytes | of all bodies |\n|---|---|---|---|---|---|---|---|\n"
+        .to_owned();
     for chain in &chains {
-        text += &chain.row();
+        times += &chain.row_of_times();
+        costs += &chain.row_of_costs();
     }
-    Ok(text)
+    Ok([times, costs])
 }
 
 impl Chain {
-    fn row(&self) -> String {
-        let Self { bodies, flops, generation_s, release_s, debug_s, bytes, ns } = self;
-        let a_body = flops.parse::<f64>().map_or(String::new(), |flops| three(flops / *bodies as f64));
-        let bytes = bytes.map_or(String::new(), |bytes| bytes.to_string());
+    fn row_of_times(&self) -> String {
+        let cells = self.times.map_or([(); 6].map(|()| String::new()), |times| {
+            let Times { joint, recursive, joint_to_recursive, maximal, careful, maximal_to_careful } = times;
+            let [joint, recursive, maximal, careful] = [joint, recursive, maximal, careful].map(three);
+            let [one, other] = [joint_to_recursive, maximal_to_careful].map(|ratio| format!("{ratio:.2}"));
+            [joint, recursive, one, maximal, careful, other]
+        });
+        format!("| {} | {} |\n", self.bodies, cells.join(" | "))
+    }
+
+    fn row_of_costs(&self) -> String {
+        let Self { bodies, flops: [of_joints, of_bodies], generation_s, release_s, debug_s, bytes, .. } =
+            self;
+        let [joint, maximal] = bytes.map_or([(); 2].map(|()| String::new()), |b| b.map(|b| b.to_string()));
         let seconds =
             |taken: &Option<f64>| taken.map_or("not compiled".to_owned(), |taken| format!("{taken:.1}"));
         let (release_s, debug_s) = (seconds(release_s), seconds(debug_s));
-        let [generated, recursive, careful] = ns.map_or([(); 3].map(|()| String::new()), |ns| ns.map(three));
         format!(
-            "| {bodies} | {flops} | {a_body} | {generated} | {recursive} | {careful} | {generation_s:.2} | {release_s} | \
-             {debug_s} | {bytes} |\n"
+            "| {bodies} | {of_joints} | {of_bodies} | {generation_s:.2} | {release_s} | {debug_s} | {joint} | {maximal} |\n"
         )
     }
+}
+
+/// The generator, optimised, as a program that prints the module of a model file.
+fn generator() -> Result<PathBuf, Failure> {
+    let _spinner = Spinner::new("building the generator".to_owned());
+    let name = "print_module";
+    let mut command = Command::new(cargo());
+    command.args(["build", "--release", "--package", "gyro-codegen", "--example", name]);
+    executable(command.current_dir(files::root()), name)
 }
 
 /// A workspace of its own for the chains' crates and the program that runs them.
@@ -82,11 +118,9 @@ impl Place {
             let name = format!("chain_{bodies}");
             self.write(&format!("{name}/model.toml"), &chain::model_file(bodies))?;
             let page = self.folder.join(&name).join("model.toml");
-            let file = fs::File::open(&page).map_err(|e| io_failure(&page, &e))?;
             let before = children_cpu_s();
             let module = Command::new(generator)
-                .arg("--generate")
-                .stdin(file)
+                .arg(&page)
                 .stderr(Stdio::inherit())
                 .output()
                 .map_err(|e| io_failure(generator, &e))?;
@@ -98,7 +132,8 @@ impl Place {
             self.write(&format!("{name}/src/mechanism.rs"), &module)?;
             self.write(&format!("{name}/src/lib.rs"), &library(bodies))?;
             self.write(&format!("{name}/Cargo.toml"), &manifest(&name, &[("gyro-sim", "gyro-sim")], &[]))?;
-            let flops = flops(&module);
+            let flops =
+                [Kernel::JointAccelerations, Kernel::Accelerations].map(|kernel| flops(&module, kernel));
             chains.push(Chain {
                 bodies,
                 flops,
@@ -106,7 +141,7 @@ impl Place {
                 release_s: None,
                 debug_s: None,
                 bytes: None,
-                ns: None,
+                times: None,
             });
         }
         self.write_program(sizes)?;
@@ -115,12 +150,7 @@ impl Place {
 
     fn write_program(&self, sizes: &[usize]) -> Result<(), Failure> {
         let names: Vec<String> = sizes.iter().map(|bodies| format!("chain_{bodies}")).collect();
-        let ours = [
-            ("gyro-sim", "gyro-sim"),
-            ("gyro-model", "model"),
-            ("gyro-assembled", "assembled"),
-            ("gyro-benches", "benches"),
-        ];
+        let ours = [("gyro-sim", "gyro-sim"), ("gyro-model", "model"), ("gyro-assembled", "assembled")];
         self.write("run/Cargo.toml", &manifest("run", &ours, &names))?;
         self.write("run/src/main.rs", &program(sizes))?;
         let members: Vec<&str> = names.iter().map(String::as_str).chain(["run"]).collect();
@@ -160,25 +190,31 @@ impl Place {
         }
         for chain in chains {
             let library = built.join("release").join(format!("libchain_{}.rlib", chain.bodies));
-            chain.bytes = machine_code::bytes(&library)
-                .map(|bytes| bytes.get(&Kernel::Accelerations).copied().unwrap_or(0));
+            let of = |bytes: &BTreeMap<_, u64>, kernel| bytes.get(&kernel).copied().unwrap_or(0);
+            chain.bytes = machine_code::bytes(&library).map(|all| {
+                [Kernel::JointAccelerations, Kernel::Accelerations].map(|kernel| of(&all, kernel))
+            });
         }
         Ok(())
     }
 
-    /// Times the accelerations of all chains in turns.
+    /// Times the accelerations of each chain in turns.
     fn run(&self, chains: &mut [Chain]) -> Result<(), Failure> {
         let _spinner = Spinner::new("running chains".to_owned());
         let compiled = || chains.iter().filter(|chain| chain.release_s.is_some());
         self.write_program(&compiled().map(|chain| chain.bodies).collect::<Vec<_>>())?;
         let said = self.cargo(&["run", "--release", "--package", "run"])?;
         let numbers: Vec<f64> = said.split_whitespace().filter_map(|word| word.parse().ok()).collect();
-        let figures = numbers.as_chunks::<3>().0;
+        let figures = numbers.as_chunks::<6>().0;
         if figures.len() != compiled().count() {
             return Err(Failure::Run(format!("the chains printed an unexpected result: {said}")));
         }
         let compiled = chains.iter_mut().filter(|chain| chain.release_s.is_some());
-        compiled.zip(figures).for_each(|(chain, ns)| chain.ns = Some(*ns));
+        for (chain, &figures) in compiled.zip(figures) {
+            let [recursive, joint, joint_to_recursive, careful, maximal, maximal_to_careful] = figures;
+            let times = Times { joint, recursive, joint_to_recursive, maximal, careful, maximal_to_careful };
+            chain.times = Some(times);
+        }
         Ok(())
     }
 
@@ -214,20 +250,27 @@ fn manifest(name: &str, ours: &[(&str, &str)], beside: &[String]) -> String {
     text
 }
 
-/// What is compiled of a chain: all but joint coordinates.
-const COMPILED: [Kernel; 12] = [
+/// What is compiled of a chain: all functions that a module has unless something else is asked for.
+const COMPILED: [Kernel; 19] = [
     Kernel::Accelerations,
     Kernel::Multipliers,
     Kernel::Derivative,
     Kernel::Phi,
     Kernel::PhiQ,
+    Kernel::PhiPi,
     Kernel::Gamma,
     Kernel::VelocityResidual,
+    Kernel::AppliedForce,
     Kernel::Energy,
     Kernel::ReadJoints,
     Kernel::ChartVectors,
     Kernel::NewtonStep,
     Kernel::SolveVelocities,
+    Kernel::JointAccelerations,
+    Kernel::ToMaximal,
+    Kernel::ToJoints,
+    Kernel::CorrectedAccelerations,
+    Kernel::CorrectedDerivative,
 ];
 
 fn library(bodies: usize) -> String {
@@ -236,41 +279,84 @@ fn library(bodies: usize) -> String {
         "{functions}
 pub fn start() -> State {{ Module::default().start() }}
 pub fn buffer() -> Accelerations {{ Module::default().acceleration_buffer() }}
+pub fn joint_start() -> Joints {{ Module::default().joint_start() }}
+pub fn rates() -> Rates {{ Module::default().joint_buffers().rates }}
 "
     )
 }
 
-/// Prints three times a chain, ns: accelerations generated, recursive, careful. All agree, or it panics.
+/// Prints six numbers a chain: recursive and joint accelerations, ns, and the median of their ratios; the same of
+/// careful ones and those of all bodies. All agree, or it panics.
 fn program(sizes: &[usize]) -> String {
-    let mut text = "use gyro_assembled::{Careful, Recursive};
-use gyro_benches::{Clock, Kernel, interleaved};
-use gyro_sim::{Dynamics, Mechanism};
+    let [kernel, round] =
+        ["kernel", "round"].map(|name| files::root().join("benches").join("src").join(format!("{name}.rs")));
+    let mut text = format!(
+        "#![allow(dead_code)]
+#[path = {kernel:?}]
+mod kernel;
+#[path = {round:?}]
+mod round;
+
+"
+    );
+    text += "use gyro_assembled::{Careful, Recursive};
+use kernel::Kernel;
+use round::{Clock, interleaved};
+use gyro_sim::{Dynamics, JointSpace, Mechanism};
 use std::hint::black_box;
 use std::time::Duration;
 
 fn main() {
-    let mut kernels = Vec::new();
-"
-    .to_owned();
+";
     for bodies in sizes {
         let _ = write!(
             text,
-            "    let model = gyro_model::read(\"model.toml\", include_str!(\"../../chain_{bodies}/model.toml\")).expect(\"a model file\");
-    let y = chain_{bodies}::start();
-    let mut out = chain_{bodies}::buffer();
-    let chain = chain_{bodies}::Module::default();
-    chain_{bodies}::accelerations(&chain, 0.0, &y, &mut out);
-    let expected = out.as_ref()[..{n_v}].to_vec();
-    kernels.push(Kernel::new(\"\", \"\", None, move || chain_{bodies}::accelerations(&chain, 0.0, black_box(&y), black_box(&mut out))));
-    kernels.push(assembled(Recursive::<f64>::new(&model).expect(\"a tree\"), &expected));
-    kernels.push(assembled(Careful::<f64>::new(&model).expect(\"a tree\"), &expected));
+            "    {{
+        let model = gyro_model::read(\"model.toml\", include_str!(\"../../chain_{bodies}/model.toml\")).expect(\"a model file\");
+        let chain = chain_{bodies}::Module::default();
+        let (y, mut out) = (chain_{bodies}::start(), chain_{bodies}::buffer());
+        let (x, mut rates) = (chain_{bodies}::joint_start(), chain_{bodies}::rates());
+        chain_{bodies}::accelerations(&chain, 0.0, &y, &mut out);
+        let expected = out.as_ref()[..{n_v}].to_vec();
+        chain_{bodies}::joint_accelerations(&chain, 0.0, &x, &mut rates);
+        let mut moved = [x, x];
+        let (plus, minus) = (1e-6, -1e-6);
+        for (x, h) in moved.iter_mut().zip([plus, minus]) {{
+            for k in 0..{bodies} {{
+                x[k] += h * x[{bodies} + k];
+                x[{bodies} + k] += h * rates[k];
+            }}
+        }}
+        agree(&chain, &moved, plus - minus, &expected);
+        let joint = Kernel::new(\"\", \"\", None, move || chain_{bodies}::joint_accelerations(&chain, 0.0, black_box(&x), black_box(&mut rates)));
+        measure(assembled(Recursive::<f64>::new(&model).expect(\"a tree\"), &expected), joint);
+        let maximal = Kernel::new(\"\", \"\", None, move || chain_{bodies}::accelerations(&chain, 0.0, black_box(&y), black_box(&mut out)));
+        measure(assembled(Careful::<f64>::new(&model).expect(\"a tree\"), &expected), maximal);
+    }}
 ",
             n_v = 6 * bodies
         );
     }
-    text += "    for figure in interleaved(&mut kernels, 51, (Duration::from_millis(1), Clock::Wall), |_| ()) {
-        println!(\"{}\", figure.ns);
+    text += "}
+
+/// Along the motion velocities of bodies change as their accelerations say.
+fn agree<M: JointSpace<Scalar = f64>>(chain: &M, moved: &[M::Joints; 2], time: f64, expected: &[f64]) {
+    let mut states = [chain.start(), chain.start()];
+    for (y, x) in states.iter_mut().zip(moved) {
+        chain.to_maximal(0.0, x, y);
     }
+    let n_positions = 7 * expected.len() / 6;
+    let largest = expected.iter().fold(0.0_f64, |largest, a| largest.max(a.abs()));
+    for (k, a) in expected.iter().enumerate() {
+        let [plus, minus] = [0, 1].map(|n| states[n].as_ref()[n_positions + k]);
+        let rate = (plus - minus) / time;
+        assert!((rate - a).abs() < 1e-4 * largest, \"{rate} {a} {largest}\");
+    }
+}
+
+fn measure(first: Kernel<'_>, second: Kernel<'_>) {
+    let figures = interleaved(&mut [first, second], 101, (Duration::from_millis(1), Clock::Wall), |_| ());
+    println!(\"{} {} {}\", figures[0].ns, figures[1].ns, figures[1].ratio);
 }
 
 fn assembled<M: Dynamics<Scalar = f64, State = Vec<f64>> + 'static>(assembled: M, expected: &[f64]) -> Kernel<'static> {
@@ -286,9 +372,9 @@ fn assembled<M: Dynamics<Scalar = f64, State = Vec<f64>> + 'static>(assembled: M
     text
 }
 
-/// The total of the accelerations in a module's data sheet.
-fn flops(module: &str) -> String {
-    let begins = format!("//! | {} |", Kernel::Accelerations.name());
+/// The total of a function in a module's data sheet.
+fn flops(module: &str, kernel: Kernel) -> String {
+    let begins = format!("//! | {} |", kernel.name());
     let row = module.lines().find(|line| line.starts_with(&begins)).unwrap_or_default();
     row.split('|').nth(6).unwrap_or_default().trim().to_owned()
 }
@@ -320,6 +406,6 @@ mod tests {
     #[test]
     fn the_total_is_the_sixth_column() {
         let sheet = "//! | function | computes | + − | × | ÷ | total | zeros |\n//! | accelerations | (s̈, ẇ'), eq. (17) | 216 | 339 | 5 | 560 | 7 of 18 |\n";
-        assert_eq!(flops(sheet), "560");
+        assert_eq!(flops(sheet, Kernel::Accelerations), "560");
     }
 }

@@ -1,6 +1,7 @@
 //! A kernel with loops as Rust tokens.
 
 use crate::emit::literals::Literals;
+use crate::emit::results::{Copied, From, evenly};
 use crate::emit::tokens::{Body, Variables, Writer, ident, index};
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
@@ -37,7 +38,7 @@ pub fn body(variables: &impl Variables, literals: &Literals, kernel: &Kernel<Sym
         statements.extend(quote! { #part #(let #names = #fixed;)* #(#places = #stored;)* #repeated });
     }
     statements.extend(parts.next());
-    let values = writer.values(&kernel.results);
+    let values = writer.results(&kernel.results);
     symbols.retain(|symbol| !matches!(symbol, Symbol::Entry { .. } | Symbol::Local(_)));
     // What loops alone read by its place needs no name.
     let tapes = [&kernel.outside].into_iter().chain(kernel.loops.iter().map(|repeat| &repeat.body));
@@ -79,6 +80,12 @@ impl<V: Variables> Variables for Outside<'_, V> {
 
     fn element(&self, symbol: Symbol) -> Option<(&'static str, usize)> {
         self.variables.element(symbol)
+    }
+
+    fn kept(&self, symbol: Symbol) -> Option<Copied> {
+        let Symbol::Entry { array, row, column } = symbol else { return None };
+        let from = From { array: array_name(array).to_string(), column: Some(column), is_negative: false };
+        Some(Copied { from, row })
     }
 }
 
@@ -142,8 +149,7 @@ impl<V: Variables> Repeated<'_, V> {
 
 /// So many rows after that of the part.
 fn row(offset: usize) -> TokenStream {
-    let offset = (offset > 0).then(|| index(offset));
-    offset.map_or(quote! { i }, |offset| quote! { i + #offset })
+    evenly(offset, 1)
 }
 
 impl<V: Variables> Variables for Repeated<'_, V> {
@@ -160,10 +166,7 @@ impl<V: Variables> Variables for Repeated<'_, V> {
             }
             Local::Element { first, stride } => {
                 let (array, at) = self.variables.element(first).expect("it is an element of an argument");
-                let (array, factor) = (ident(array), (stride > 1).then(|| index(stride)));
-                let i = factor.map_or(quote! { i }, |factor| quote! { #factor * i });
-                let at = (at > 0).then(|| index(at));
-                let place = at.map_or(i.clone(), |at| quote! { #i + #at });
+                let (array, place) = (ident(array), evenly(at, stride));
                 quote! { #array[#place] }
             }
             Local::Fixed(number) => {

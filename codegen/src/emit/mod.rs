@@ -4,4 +4,5 @@ pub mod data_sheet;
 pub mod literals;
 pub mod loops;
 pub mod module;
+pub mod results;
 pub mod tokens;

@@ -1,6 +1,7 @@
 //! A tape as Rust tokens.
 
 use crate::emit::literals::Literals;
+use crate::emit::results::{Copied, From, Value};
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
 use crate::tape::{Exact, Kernel, Operation, Place};
@@ -16,7 +17,7 @@ pub struct Body {
     /// Bindings of literals, variables and shared expressions.
     pub statements: TokenStream,
     /// One expression for each root.
-    pub values: Vec<TokenStream>,
+    pub values: Vec<Value>,
     /// Variables that the program reads.
     pub symbols: BTreeSet<Symbol>,
 }
@@ -27,6 +28,10 @@ pub trait Variables {
     fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>);
     /// The array that a variable is an element of, and where, if it is.
     fn element(&self, symbol: Symbol) -> Option<(&'static str, usize)>;
+    /// The entry that it is of an array that loops fill.
+    fn kept(&self, _: Symbol) -> Option<Copied> {
+        None
+    }
 }
 
 /// Statements in one block: rustc opens a scope for each `let` and recurses over them, so long functions are cut into
@@ -53,7 +58,7 @@ pub fn body(variables: &impl Variables, literals: &Literals, kernel: &Kernel<Sym
     let writer = Writer::new(&kernel.outside, variables, literals, "t");
     let symbols = writer.symbols();
     let bindings = writer.bindings(&symbols);
-    let values = writer.values(&kernel.results);
+    let values = writer.results(&kernel.results);
     let temporaries: TokenStream = writer.parts(&kernel.parts(), &kernel.results).into_iter().collect();
     let literal = writer.literal_binding();
     let statements = quote! { #literal #bindings #temporaries };
@@ -102,6 +107,27 @@ impl<'a, V: Variables> Writer<'a, V> {
     /// Values as they stand at the end of an assignment.
     pub fn values(&self, roots: &[Place]) -> Vec<TokenStream> {
         roots.iter().map(|&root| self.expression(root, Binding::Sum)).collect()
+    }
+
+    /// The same for the results of a function.
+    pub fn results(&self, roots: &[Place]) -> Vec<Value> {
+        let tokens = self.values(roots).into_iter().zip(roots);
+        tokens.map(|(tokens, &root)| Value { tokens, copied: self.copied(root) }).collect()
+    }
+
+    /// What a root copies of an array that loops fill.
+    fn copied(&self, root: Place) -> Option<Copied> {
+        if self.names.contains_key(&root) {
+            return None;
+        }
+        match self.tape.operation(root) {
+            Operation::Variable(symbol) => self.variables.kept(*symbol),
+            Operation::Negate(of) => {
+                let Copied { from, row } = self.copied(*of)?;
+                Some(Copied { from: From { is_negative: !from.is_negative, ..from }, row })
+            }
+            _ => None,
+        }
     }
 
     /// What literals are made by, if there are any in what was written.
@@ -267,7 +293,7 @@ mod tests {
         let [x, y] = [0, 1].map(|k| graph.symbol(Symbol::Coordinate(k)));
         let root = build(&mut graph, [x, y]);
         let body = body(&Coordinates, &Literals::default(), &straight(&graph, &[root]));
-        body.values[0].to_string().replace(' ', "")
+        body.values[0].tokens.to_string().replace(' ', "")
     }
 
     /// A method binds more strongly than a sign.

@@ -30,8 +30,10 @@ use shift::{Shift, Way};
 use signs::Signs;
 use terms::{Place, Terms};
 
-/// Kernels with fewer operations stay straight-line.
-const LEAST_OPERATIONS: usize = 3000;
+/// A kernel with so many operations gets loops if they make its text so many times shorter. One that fits the
+/// instruction cache runs as fast without: there loops are for compilers, and have to be worth it.
+const LARGE: Size = Size { n_least: 3000, shorter: 2 };
+const SMALL: Size = Size { n_least: 300, shorter: 8 };
 
 /// Parts that are worth a loop.
 const LEAST_PARTS: usize = 4;
@@ -51,29 +53,35 @@ const WAYS: [Way; 6] = [
 const SHORT: usize = 5;
 const LONG: usize = 4000;
 
-/// A kernel with loops, if it is long and loops make its text shorter by half. `element` says in which argument a
-/// variable is, and where.
+#[derive(Clone, Copy, Debug)]
+struct Size {
+    n_least: usize,
+    shorter: usize,
+}
+
+/// A kernel with loops, if it is long and loops make its text shorter. `element` says in which argument a variable is,
+/// and where.
 pub fn rolled(
     graph: &Graph,
     roots: &[ExprId],
     element: &dyn Fn(Symbol) -> Option<Element>,
     effort: Effort,
 ) -> Option<Rolled> {
-    let n_ways = if effort == Effort::Quick { 1 } else { WAYS.len() };
-    rolled_by(&WAYS[..n_ways], LEAST_OPERATIONS, (graph, roots), element)
+    let n_operations = Operations::count(graph, roots).total();
+    let size = [LARGE, SMALL].into_iter().find(|size| n_operations >= size.n_least)?;
+    let is_thorough = effort == Effort::Full && n_operations >= LARGE.n_least;
+    let n_ways = if is_thorough { WAYS.len() } else { 1 };
+    rolled_by(&WAYS[..n_ways], n_operations.div_ceil(size.shorter), (graph, roots), element)
 }
 
-/// The same in some ways, from so many operations on.
+/// The same in some ways, if its text is shorter than this.
 fn rolled_by(
     ways: &[Way],
-    n_least: usize,
+    longest: usize,
     (graph, roots): (&Graph, &[ExprId]),
     element: &dyn Fn(Symbol) -> Option<Element>,
 ) -> Option<Rolled> {
     let n_operations = Operations::count(graph, roots).total();
-    if n_operations < n_least {
-        return None;
-    }
     let terms = Terms::of(graph, roots);
     let mut shortest: Option<(Rolled, Way)> = None;
     for &way in ways {
@@ -85,7 +93,7 @@ fn rolled_by(
                 }
                 rolled.length()
             }
-            None => n_operations.div_ceil(2),
+            None => longest,
         };
         let found = in_one_way(graph, &terms, element, way);
         shortest = found.filter(|rolled| rolled.length() < least).map(|rolled| (rolled, way)).or(shortest);

@@ -3,7 +3,6 @@
 use super::colours::colours;
 use super::terms::{Kind, Operand, Place, Term, Terms, variable};
 use crate::expr::graph::{Graph, Node};
-use rustc_hash::FxHashMap as HashMap;
 use std::collections::BTreeMap;
 
 /// How parts are found.
@@ -270,11 +269,10 @@ impl Search {
     }
 
     fn operands(&mut self, one: Place, other: Place, by_colour: bool) {
-        let [a, b] = [one, other].map(|place| {
-            self.terms.all[place].operands.iter().map(|operand| operand.term).collect::<Vec<_>>()
-        });
-        match (&a[..], &b[..]) {
-            (&[a0, a1], &[b0, b1]) if self.terms.all[one].kind.is_commutative() => {
+        // Those of `one` may be paired on the way, but stay what they are.
+        let [a, b] = [one, other].map(|place| self.places(place));
+        match ([a[0], a[1]], [b[0], b[1]]) {
+            ([Some(a0), Some(a1)], [Some(b0), Some(b1)]) if self.terms.all[one].kind.is_commutative() => {
                 if self.is_known(a0, b0) || self.is_known(a1, b1) {
                     self.pair_alike(a0, b0, by_colour);
                     self.pair_alike(a1, b1, by_colour);
@@ -298,11 +296,17 @@ impl Search {
                 }
             }
             _ => {
-                for (&a, &b) in a.iter().zip(&b) {
+                for (a, b) in a.into_iter().flatten().zip(b.into_iter().flatten()) {
                     self.pair_alike(a, b, by_colour);
                 }
             }
         }
+    }
+
+    /// The operands of a term: no operation has more than two.
+    fn places(&self, term: Place) -> [Option<Place>; 2] {
+        let operands = &self.terms.all[term].operands;
+        [0, 1].map(|slot| operands.get(slot).map(|operand| operand.term))
     }
 
     fn pair_alike(&mut self, one: Place, other: Place, by_colour: bool) {
@@ -313,47 +317,57 @@ impl Search {
 
     fn users(&mut self, one: Place, other: Place, by_colour: bool) {
         // What has another operand that is known.
-        for user in self.terms.all[one].users.clone() {
+        for at in 0..self.terms.all[one].users.len() {
+            let user = self.terms.all[one].users[at];
             if self.shift.next[user].is_some() {
                 continue;
             }
             let kind = self.terms.all[user].kind;
-            let Some(&beside) = self.beside(user, one).first() else { continue };
+            let Some(beside) = self.beside(user, one) else { continue };
             let fits = |&&candidate: &&Place| {
                 self.terms.all[candidate].kind == kind
                     && self.shift.previous[candidate].is_none()
-                    && self.beside(candidate, other).iter().any(|&b| self.is_known(beside, b))
+                    && self.beside(candidate, other).is_some_and(|b| self.is_known(beside, b))
             };
-            let found: Vec<_> = self.terms.all[other].users.iter().filter(fits).copied().collect();
-            if let &[candidate] = &found[..] {
+            let mut found = self.terms.all[other].users.iter().filter(fits);
+            if let (Some(&candidate), None) = (found.next(), found.next()) {
                 self.pair(user, candidate);
             }
         }
         // What is the only one of its kind.
-        let group = |search: &Self, place: Place, is_open: &dyn Fn(Place) -> bool| {
-            let mut groups: HashMap<(Kind, u64), Vec<Place>> = HashMap::default();
-            for &user in search.terms.all[place].users.iter().filter(|&&user| is_open(user)) {
-                let colour = if by_colour { search.colours[user] } else { 0 };
-                groups.entry((search.terms.all[user].kind, colour)).or_default().push(user);
-            }
-            groups
-        };
-        let ours = group(self, one, &|user| self.shift.next[user].is_none());
-        let theirs = group(self, other, &|user| self.shift.previous[user].is_none());
-        for (key, ours) in ours {
-            if let (&[a], Some(&[b])) = (&ours[..], theirs.get(&key).map(Vec::as_slice)) {
-                self.pair(a, b);
+        let ours = self.only_ones(one, by_colour, &self.shift.next);
+        if ours.is_empty() {
+            return;
+        }
+        let theirs = self.only_ones(other, by_colour, &self.shift.previous);
+        for (key, a) in ours {
+            if let Ok(at) = theirs.binary_search_by_key(&key, |&(key, _)| key) {
+                self.pair(a, theirs[at].1);
             }
         }
     }
 
-    /// The operands of a term but for one.
-    fn beside(&self, term: Place, operand: Place) -> Vec<Place> {
-        let operands = self.terms.all[term].operands.iter().map(|operand| operand.term);
-        let mut beside: Vec<_> = operands.collect();
-        if let Some(at) = beside.iter().position(|&term| term == operand) {
-            beside.remove(at);
-        }
-        beside
+    /// The users of a term without a counterpart that are the only ones of their kind and colour, in the order of these.
+    fn only_ones(
+        &self,
+        place: Place,
+        by_colour: bool,
+        counterparts: &[Option<Place>],
+    ) -> Vec<((Kind, u64), Place)> {
+        let is_open = |user: &&Place| counterparts[**user].is_none();
+        let open = self.terms.all[place].users.iter().filter(is_open).map(|&user| {
+            let colour = if by_colour { self.colours[user] } else { 0 };
+            ((self.terms.all[user].kind, colour), user)
+        });
+        let mut sorted: Vec<_> = open.collect();
+        sorted.sort_unstable();
+        let groups = sorted.chunk_by(|(one, _), (other, _)| one == other);
+        groups.filter(|group| group.len() == 1).map(|group| group[0]).collect()
+    }
+
+    /// The other operand of a term.
+    fn beside(&self, term: Place, operand: Place) -> Option<Place> {
+        let [first, second] = self.places(term);
+        if first == Some(operand) { second } else { first }
     }
 }

@@ -138,7 +138,9 @@ fn check(page: &str, wanted: &[Kernel]) -> Vec<(usize, usize)> {
     let sizes = wanted.iter().map(|&kernel| {
         let roots = kernels.roots(kernel);
         let straight = Operations::count(graph, roots).total();
-        let Some(rolled) = rolled_by(&WAYS, 500, (graph, roots), &element) else {
+        let is_long = straight >= 500;
+        let found = is_long.then(|| rolled_by(&WAYS, straight.div_ceil(2), (graph, roots), &element));
+        let Some(rolled) = found.flatten() else {
             return (straight, straight);
         };
         let more = rolled.executed().total().checked_sub(straight);

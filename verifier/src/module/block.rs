@@ -1,15 +1,15 @@
 //! Function bodies of the emitted subset.
 
 use super::arrays::{Array, Table};
-use super::syntax::{integer, is_name, refused, text};
+use super::syntax::{integer, refused, text};
 use crate::constants::Occurrence;
 use crate::program::{Id, Node, Program, Source};
 use crate::refusal::Refusal;
 use gyro_model::Model;
 use proc_macro2::Span;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use syn::spanned::Spanned;
-use syn::{Block, Expr, ExprArray, Local, Pat, Stmt, UnOp};
+use syn::{Block, Expr, Local, Pat, Stmt};
 
 /// What a name stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,6 +97,9 @@ pub struct Reader<'a> {
     pub literals: HashMap<(usize, usize), usize>,
     /// Entries of arrays and rounds of loops.
     pub n_run: usize,
+    /// How results are given, and those that loops have stored, by their places.
+    pub form: Form,
+    pub stored: BTreeMap<usize, Id>,
 }
 
 #[derive(Debug)]
@@ -125,6 +128,8 @@ impl<'a> Reader<'a> {
             tables: Vec::new(),
             literals: HashMap::new(),
             n_run: 0,
+            form: Form::Filling,
+            stored: BTreeMap::new(),
         }
     }
 
@@ -178,6 +183,7 @@ impl<'a> Reader<'a> {
 
     /// Reads the whole body.
     pub fn body(mut self, block: &Block, form: Form) -> Result<Program, Refusal> {
+        self.form = form;
         let mut statements = block.stmts.as_slice();
         while let [statement, rest @ ..] = statements {
             let Stmt::Local(local) = statement else {
@@ -187,6 +193,7 @@ impl<'a> Reader<'a> {
                 statements = rest;
                 continue;
             };
+            self.before_results(statement)?;
             statements = rest;
             if let Some(before) = self.before.filter(|before| before.starts(local, self.sizes.accelerations))
             {
@@ -198,6 +205,9 @@ impl<'a> Reader<'a> {
             }
         }
         self.results(statements, block, form)?;
+        if !self.stored.is_empty() {
+            return Err(Refusal::at(block.span(), "results are stored that the function does not give"));
+        }
         let unread = self.unread();
         let mut unused: Vec<_> =
             self.names.into_iter().filter(|(_, n)| !n.is_used && n.known != Known::Target).collect();
@@ -205,6 +215,14 @@ impl<'a> Reader<'a> {
         self.program.unused = unused.into_iter().map(|(name, entry)| (name, entry.line)).collect();
         self.program.unused.extend(unread);
         Ok(self.program)
+    }
+
+    /// Refuses what comes after results that were stored: it might read them.
+    pub fn before_results(&self, at: &impl Spanned) -> Result<(), Refusal> {
+        if self.stored.is_empty() {
+            return Ok(());
+        }
+        Err(Refusal::at(at.span(), "something is computed after results were stored"))
     }
 
     pub fn bind(&mut self, name: String, known: Known, span: Span) -> Result<(), Refusal> {
@@ -259,7 +277,7 @@ impl<'a> Reader<'a> {
     }
 
     /// `y[3]`, `x[3]`, `charts[0][1]`.
-    fn argument_element(&mut self, array: &Expr, index: &Expr) -> Result<Option<Source>, Refusal> {
+    pub fn argument_element(&mut self, array: &Expr, index: &Expr) -> Result<Option<Source>, Refusal> {
         if let Expr::Index(inner) = array {
             match self.known(&inner.expr)? {
                 Known::Charts => {}
@@ -336,107 +354,6 @@ impl<'a> Reader<'a> {
             entry.is_used = true;
         }
         Ok(())
-    }
-
-    fn results(&mut self, statements: &[Stmt], block: &Block, form: Form) -> Result<(), Refusal> {
-        match (form, statements) {
-            (Form::Filling, [fill]) => self.fill(fill, None),
-            (Form::Jacobian, [by_state, by_time]) => {
-                self.fill(by_state, Some("dfdx"))?;
-                self.fill(by_time, Some("dfdt"))
-            }
-            // A function without results has an empty body.
-            (Form::Filling, []) => Ok(()),
-            (Form::Vectors, [Stmt::Expr(Expr::Array(vectors), None)]) => {
-                vectors.elems.iter().try_for_each(|vector| match vector {
-                    Expr::Array(array) if array.elems.len() == 4 => self.all(array),
-                    _ => Err(refused(vector)),
-                })
-            }
-            (Form::Energy, [Stmt::Expr(Expr::Struct(energy), None)]) => {
-                let fields: Vec<_> = energy.fields.iter().map(|field| text(&field.member)).collect();
-                if text(&energy.path) != "gyro_sim :: Energy"
-                    || fields != ["kinetic", "potential"]
-                    || energy.rest.is_some()
-                {
-                    return Err(refused(energy));
-                }
-                energy.fields.iter().try_for_each(|field| self.result(&field.expr))
-            }
-            (Form::Stores, stores) => {
-                stores.iter().try_for_each(|store| self.store(store, "y", Known::State))
-            }
-            (Form::JointStores, stores) => {
-                stores.iter().try_for_each(|store| self.store(store, "x", Known::Joints))
-            }
-            (Form::Joints, stores) => {
-                stores.iter().try_for_each(|store| self.store(store, "x", Known::Joints))?;
-                if self.program.places.len() == self.sizes.joints {
-                    Ok(())
-                } else {
-                    Err(Refusal::at(block.span(), "not all joint coordinates are stored"))
-                }
-            }
-            _ => Err(Refusal::at(
-                statements.first().map_or(block.span(), Spanned::span),
-                "the function does not end as it must",
-            )),
-        }
-    }
-
-    /// `*out = [...];`, of this name if one is given.
-    fn fill(&mut self, statement: &Stmt, name: Option<&str>) -> Result<(), Refusal> {
-        let Stmt::Expr(Expr::Assign(assign), Some(_)) = statement else { return Err(refused(statement)) };
-        match (&*assign.left, &*assign.right) {
-            (Expr::Unary(left), Expr::Array(array))
-                if matches!(left.op, UnOp::Deref(_))
-                    && self.known(&left.expr)? == Known::Target
-                    && name.is_none_or(|name| is_name(&left.expr, name)) =>
-            {
-                self.all(array)
-            }
-            _ => Err(refused(assign)),
-        }
-    }
-
-    fn all(&mut self, array: &ExprArray) -> Result<(), Refusal> {
-        array.elems.iter().try_for_each(|element| self.result(element))
-    }
-
-    /// An expression, or something given that goes through.
-    fn result(&mut self, expression: &Expr) -> Result<(), Refusal> {
-        let given = match expression {
-            Expr::Index(index) => self.argument_element(&index.expr, &index.index)?,
-            _ => None,
-        };
-        let id = match given {
-            Some(source) => self.push(Node::Read(source), expression.span()),
-            None => self.expression(expression)?,
-        };
-        self.program.results.push(id);
-        Ok(())
-    }
-
-    /// `y[3] = ...;`
-    fn store(&mut self, statement: &Stmt, name: &str, known: Known) -> Result<(), Refusal> {
-        let Stmt::Expr(Expr::Assign(assign), Some(_)) = statement else { return Err(refused(statement)) };
-        let Expr::Index(target) = &*assign.left else { return Err(refused(statement)) };
-        let place = integer(&target.index)?;
-        let is_new = self.program.places.last().is_none_or(|&last| last < place);
-        let size = if known == Known::State { self.sizes.state } else { self.sizes.joints };
-        if !is_name(&target.expr, name) || self.known(&target.expr)? != known || place >= size {
-            return Err(refused(statement));
-        }
-        if !is_new {
-            let message = format!("{name}[{place}] is stored after a later element");
-            return Err(Refusal::at(statement.span(), message));
-        }
-        self.program.places.push(place);
-        // What was stored before must not be read.
-        match &*assign.right {
-            Expr::Index(index) if is_name(&index.expr, name) => Err(refused(statement)),
-            right => self.result(right),
-        }
     }
 }
 

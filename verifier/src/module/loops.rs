@@ -2,7 +2,7 @@
 //! operation, and everything that is proved of a program is proved of its loops.
 
 use super::arrays::{Array, Table, uses};
-use super::block::{Known, Reader};
+use super::block::{Form, Known, Reader};
 use super::syntax::{decimal, integer, refused, text};
 use crate::constants::Occurrence;
 use crate::program::{Id, Node};
@@ -77,15 +77,22 @@ impl Reader<'_> {
         self.bind(name, Known::Table(self.tables.len() - 1), table.span())
     }
 
-    /// `for i in 0..12 { ... }` or `for i in (0..12).rev() { ... }`: bindings, then a row that is stored.
+    /// `for i in 0..12 { ... }` or `for i in (0..12).rev() { ... }`: bindings, then a row that is stored. Or nothing but
+    /// results that are stored.
     fn repeated(&mut self, repeated: &ExprForLoop) -> Result<(), Refusal> {
         let Pat::Ident(name) = &*repeated.pat else { return Err(refused(&repeated.pat)) };
         let name = name.ident.to_string();
         let parts = parts(&repeated.expr)?;
+        if let Some(Stmt::Expr(Expr::Assign(assign), Some(_))) = repeated.body.stmts.first()
+            && !matches!(&*assign.right, Expr::Array(_))
+        {
+            return self.copies(&name, parts, repeated);
+        }
         let Some((Stmt::Expr(Expr::Assign(assign), Some(_)), bindings)) = repeated.body.stmts.split_last()
         else {
             return Err(refused(repeated));
         };
+        self.before_results(repeated)?;
         let (Expr::Index(target), Expr::Array(values)) = (&*assign.left, &*assign.right) else {
             return Err(refused(assign));
         };
@@ -109,6 +116,40 @@ impl Reader<'_> {
             }
         }
         Ok(())
+    }
+
+    /// `for i in 0..12 { out[3 * i + 1] = kept0[i][2]; ... }`
+    fn copies(&mut self, name: &str, parts: Vec<usize>, repeated: &ExprForLoop) -> Result<(), Refusal> {
+        self.count(parts.len().saturating_mul(repeated.body.stmts.len()), repeated)?;
+        self.program.loops.push((repeated.span().start().line, repeated.span().end().line));
+        for part in parts {
+            let start = self.bound.len();
+            self.bind(name.to_owned(), Known::Part(part), repeated.span())?;
+            for statement in &repeated.body.stmts {
+                self.copy(statement)?;
+            }
+            let inside: HashSet<String> = self.bound.drain(start..).collect();
+            self.leave(inside, &[]);
+        }
+        Ok(())
+    }
+
+    /// `out[3 * i + 1] = -kept0[i][2];`: an expression reads no argument, which might be what is written.
+    fn copy(&mut self, statement: &Stmt) -> Result<(), Refusal> {
+        let Stmt::Expr(Expr::Assign(assign), Some(_)) = statement else { return Err(refused(statement)) };
+        let Expr::Index(target) = &*assign.left else { return Err(refused(statement)) };
+        let size = match (self.form, self.known(&target.expr)?) {
+            (Form::Filling, Known::Target) => MOST,
+            (Form::Stores, Known::State) => self.sizes.state,
+            (Form::Joints | Form::JointStores, Known::Joints) => self.sizes.joints,
+            _ => return Err(refused(statement)),
+        };
+        let place = self.place(&target.index)?;
+        let value = self.expression(&assign.right)?;
+        if place >= size {
+            return Err(refused(statement));
+        }
+        self.keep(place, value, statement)
     }
 
     /// `kept0[i + 1] = [...];`

@@ -14,6 +14,7 @@ mod mutants;
 mod near_numbers;
 mod needless;
 mod proofs;
+mod results;
 mod rounding;
 mod substituted;
 mod verdicts;

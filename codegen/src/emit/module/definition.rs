@@ -2,6 +2,7 @@
 
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
+use crate::emit::results::filled;
 use crate::emit::tokens::{ident, index};
 use crate::kernels::Kernel;
 use gyro_model::{Computation, Model, Number, Parameter, ParameterRule};
@@ -177,11 +178,11 @@ impl ModuleWriter<'_> {
         let n = index(roots.len());
         (!roots.is_empty()).then(|| {
             self.function("What depends on parameters alone", roots, |body, _, _| {
-                let (statements, values) = (&body.statements, &body.values);
+                let (statements, filled) = (&body.statements, filled("out", &body.values));
                 quote! {
                     fn parameter_setup(&self, out: &mut [T; #n]) {
                         #statements
-                        *out = [#(#values),*];
+                        #filled
                     }
                 }
             })

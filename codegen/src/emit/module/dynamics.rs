@@ -1,6 +1,7 @@
 //! The equations of motion in maximal coordinates, and the projection.
 
 use super::writer::ModuleWriter;
+use crate::emit::results::{Value, filled};
 use crate::emit::tokens::{ident, index};
 use crate::expr::symbol::Symbol;
 use crate::groups::Group;
@@ -132,13 +133,13 @@ impl ModuleWriter<'_> {
         }
         let what = "Solves eq. (17) without forces, the changes of the rows for γ";
         let project = self.function(what, self.kernels.roots(Kernel::Project), |body, t, y| {
-            let (statements, values) = (&body.statements, &body.values);
+            let (statements, filled) = (&body.statements, filled("out", &body.values));
             let reads_rows = body.symbols.iter().any(|symbol| matches!(symbol, Symbol::Change(_)));
             let rows = ident(if reads_rows { "rows" } else { "_rows" });
             quote! {
                 fn project(&self, #t: T, #y: &Self::State, #rows: &Self::Rows, out: &mut Self::Velocities) {
                     #statements
-                    *out = [#(#values),*];
+                    #filled
                 }
             }
         });
@@ -184,12 +185,15 @@ impl ModuleWriter<'_> {
         let (name, n_positions) = (ident(kernel.name()), 7 * self.equations.n_moving_bodies());
         self.function(what, self.kernels.roots(kernel), |body, _, _| {
             let (statements, (positions, rest)) = (&body.statements, body.values.split_at(n_positions));
-            let places = (0..self.equations.n_velocities()).map(index);
+            let solved = (0..self.equations.n_velocities()).map(|k| Value::of_buffer("accelerations", k));
+            let values: Vec<Value> =
+                positions.iter().cloned().chain(solved).chain(rest.iter().cloned()).collect();
+            let filled = filled("dy", &values);
             quote! {
                 fn #name(&self, t: T, y: &Self::State, dy: &mut Self::State) {
                     #solve
                     #statements
-                    *dy = [#(#positions,)* #(accelerations[#places],)* #(#rest),*];
+                    #filled
                 }
             }
         })
@@ -199,7 +203,7 @@ impl ModuleWriter<'_> {
     fn multipliers(&self, kernel: Kernel, accelerations: &str) -> TokenStream {
         let (name, accelerations) = (ident(kernel.name()), ident(accelerations));
         self.function("Writes λ", self.kernels.roots(kernel), |body, t, y| {
-            let (statements, values) = (&body.statements, &body.values);
+            let (statements, filled) = (&body.statements, filled("lambda", &body.values));
             let known = |s: &Symbol| matches!(s, Symbol::Acceleration { .. } | Symbol::LoopMultiplier(_));
             let argument =
                 ident(if body.symbols.iter().any(known) { "accelerations" } else { "_accelerations" });
@@ -208,7 +212,7 @@ impl ModuleWriter<'_> {
                     &self, #t: T, #y: &Self::State, #argument: &Self::#accelerations, lambda: &mut Self::Rows,
                 ) {
                     #statements
-                    *lambda = [#(#values),*];
+                    #filled
                 }
             }
         })

@@ -2,6 +2,7 @@
 
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
+use crate::emit::results::{Value, filled, stored};
 use crate::emit::tokens::{Body, ident, index};
 use crate::joint_space::JointSpace;
 use crate::kernels::Kernel;
@@ -23,7 +24,7 @@ impl ModuleWriter<'_> {
             Kernel::JointAccelerations,
             "Writes u̇",
             &quote! { out: &mut Self::Rates },
-            |values| quote! { *out = [#(#values),*]; },
+            |values| filled("out", values),
         );
         let derivative = self.joint_derivative(n_x, n_u);
         let to_maximal = self.to_maximal(n_x + n_u);
@@ -99,13 +100,13 @@ impl ModuleWriter<'_> {
             Kernel::LoopClosure,
             "Writes Φ of the joints that close loops",
             &quote! { out: &mut Self::Closure },
-            |values| quote! { *out = [#(#values),*]; },
+            |values| filled("out", values),
         );
         let distances = self.of_joints(
             Kernel::ClosureDistances,
             "Writes squares of distances between the rows of the loops' Jacobian",
             &quote! { out: &mut Self::Closure },
-            |values| quote! { *out = [#(#values),*]; },
+            |values| filled("out", values),
         );
         let what = "One Newton step of the joint coordinates towards closed loops";
         let positions = self.closing(Kernel::ClosePositions, what);
@@ -122,14 +123,13 @@ impl ModuleWriter<'_> {
     /// A function that overwrites part of the joint state; what keeps its value is not stored again.
     fn closing(&self, kernel: Kernel, what: &str) -> TokenStream {
         let (places, roots) = scheduled::stores(self.equations, kernel, self.kernels.roots(kernel));
-        let places: Vec<_> = places.into_iter().map(index).collect();
         let name = ident(kernel.name());
         self.function(what, &roots, |body, t, _| {
-            let (statements, values) = (&body.statements, &body.values);
+            let (statements, stored) = (&body.statements, stored("x", &places, &body.values));
             quote! {
                 fn #name(&self, #t: T, x: &mut Self::Joints) {
                     #statements
-                    #(x[#places] = #values;)*
+                    #stored
                 }
             }
         })
@@ -162,7 +162,7 @@ impl ModuleWriter<'_> {
             }
         } else {
             let out = quote! { out: &mut Self::InputJacobian };
-            let write = |values: &[TokenStream]| quote! { *out = [#(#values),*]; };
+            let write = |values: &[Value]| filled("out", values);
             self.of_joints(Kernel::JointInputJacobian, "Writes ∂f/∂(inputs)", &out, write)
         };
         Some(quote! {
@@ -189,7 +189,7 @@ impl ModuleWriter<'_> {
         kernel: Kernel,
         what: &str,
         out: &TokenStream,
-        write: impl Fn(&[TokenStream]) -> TokenStream,
+        write: impl Fn(&[Value]) -> TokenStream,
     ) -> TokenStream {
         self.function(what, self.kernels.roots(kernel), |body, t, x| {
             of_joints(kernel, [t, &quote! { #x }, out], body, write(&body.values))
@@ -200,13 +200,16 @@ impl ModuleWriter<'_> {
         let what = "Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes";
         self.function(what, self.kernels.roots(Kernel::JointDerivative), |body, _, _| {
             let (statements, (coordinates, rest)) = (&body.statements, body.values.split_at(n_x));
-            let (places, n_rates) = ((0..n_u).map(index), index(n_u));
+            let (solved, n_rates) = ((0..n_u).map(|k| Value::of_buffer("rates", k)), index(n_u));
+            let values: Vec<Value> =
+                coordinates.iter().cloned().chain(solved).chain(rest.iter().cloned()).collect();
+            let filled = filled("dx", &values);
             quote! {
                 fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
                     let mut rates = [T::constant(0.0); #n_rates];
                     gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
                     #statements
-                    *dx = [#(#coordinates,)* #(rates[#places],)* #(#rest),*];
+                    #filled
                 }
             }
         })
@@ -214,34 +217,31 @@ impl ModuleWriter<'_> {
 
     fn to_maximal(&self, work_at: usize) -> TokenStream {
         let n_state = 13 * self.equations.n_moving_bodies();
-        let work = self.equations.power.is_some().then(|| index(work_at));
-        let work = work.map(|at| quote! { x[#at], });
+        let work = self.equations.power.is_some();
         let out = quote! { y: &mut Self::State };
         let what = "Writes the maximal state of a joint state";
         self.function(what, self.kernels.roots(Kernel::ToMaximal), |body, t, x| {
             let (state, turns) = body.values.split_at(n_state);
-            let x = if work.is_some() {
+            let work_done = work.then(|| Value::of_buffer("x", work_at));
+            let values: Vec<Value> =
+                state.iter().cloned().chain(work_done).chain(turns.iter().cloned()).collect();
+            let x = if work {
                 quote! { x }
             } else {
                 quote! { #x }
             };
-            of_joints(
-                Kernel::ToMaximal,
-                [t, &x, &out],
-                body,
-                quote! { *y = [#(#state,)* #work #(#turns),*]; },
-            )
+            of_joints(Kernel::ToMaximal, [t, &x, &out], body, filled("y", &values))
         })
     }
 
     fn to_joints(&self, n: usize) -> TokenStream {
         let work = self.equations.power.is_some().then(|| index(13 * self.equations.n_moving_bodies()));
-        let places: Vec<_> = (0..n).map(index).collect();
+        let places: Vec<usize> = (0..n).collect();
         let at = index(n);
         let work = work.map(|work| quote! { x[#at] = y[#work]; });
         let what = "Writes the joint state of a maximal state";
         self.function(what, self.kernels.roots(Kernel::ToJoints), |body, t, y| {
-            let (statements, values) = (&body.statements, &body.values);
+            let (statements, stored) = (&body.statements, stored("x", &places, &body.values));
             let y = if work.is_some() {
                 quote! { y }
             } else {
@@ -250,7 +250,7 @@ impl ModuleWriter<'_> {
             quote! {
                 fn to_joints(&self, #t: T, #y: &Self::State, x: &mut Self::Joints) {
                     #statements
-                    #(x[#places] = #values;)*
+                    #stored
                     #work
                 }
             }

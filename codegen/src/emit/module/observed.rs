@@ -1,6 +1,7 @@
 //! What is read off a joint state.
 
 use super::writer::ModuleWriter;
+use crate::emit::results::{Value, filled};
 use crate::emit::tokens::{ident, index};
 use crate::expr::symbol::Symbol;
 use crate::kernels::Kernel;
@@ -18,7 +19,7 @@ impl ModuleWriter<'_> {
         let name = ident(self.type_name);
         let n_rates = index(space.layout.n_rates);
         let outputs = self.function("Writes the outputs of a joint state", roots, |body, t, x| {
-            let (statements, values) = (&body.statements, &body.values);
+            let (statements, filled) = (&body.statements, filled("out", &body.values));
             let reads_rates = body.symbols.iter().any(|symbol| matches!(symbol, Symbol::RateOfRate(_)));
             let (t, x, solved) = if reads_rates {
                 let solved = quote! {
@@ -33,7 +34,7 @@ impl ModuleWriter<'_> {
                 fn joint_outputs(&self, #t: T, #x: &Self::Joints, out: &mut Self::Outputs) {
                     #solved
                     #statements
-                    *out = [#(#values),*];
+                    #filled
                 }
             }
         });
@@ -88,13 +89,13 @@ impl ModuleWriter<'_> {
         let functions = kernels.map(|(kernel, what, ty, _)| {
             let (function, ty) = (ident(kernel.name()), ident(ty));
             self.function(&format!("Writes {what}"), self.kernels.roots(kernel), |body, t, x| {
-                let (statements, values) = (&body.statements, &body.values);
+                let (statements, filled) = (&body.statements, filled("out", &body.values));
                 let reads_rates = body.symbols.iter().any(|symbol| matches!(symbol, Symbol::RateOfRate(_)));
                 let rates = ident(if reads_rates { "accelerations" } else { "_accelerations" });
                 quote! {
                     fn #function(&self, #t: T, #x: &Self::Joints, #rates: &Self::Rates, out: &mut Self::#ty) {
                         #statements
-                        *out = [#(#values),*];
+                        #filled
                     }
                 }
             })
@@ -124,7 +125,7 @@ impl ModuleWriter<'_> {
         let n_biases = index(frames.biases.roots.len());
         let n_jacobians = index(frames.jacobians.roots.len());
         let names = &frames.names;
-        let write = |values: &[TokenStream]| quote! { *out = [#(#values),*]; };
+        let write = |values: &[Value]| filled("out", values);
         let jacobians = self.of_joints(
             Kernel::FrameJacobians,
             "Writes ∂(ṡ, w')/∂u of frames, row by row",

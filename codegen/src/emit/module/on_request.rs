@@ -1,6 +1,7 @@
 //! What controllers of robots ask for, a trait for each group.
 
 use super::writer::ModuleWriter;
+use crate::emit::results::filled;
 use crate::emit::tokens::{ident, index};
 use crate::expr::symbol::Symbol;
 use crate::kernels::Kernel;
@@ -116,14 +117,14 @@ impl ModuleWriter<'_> {
     fn of_accelerations(&self, kernel: Kernel, what: &str, out: &TokenStream) -> TokenStream {
         let name = ident(kernel.name());
         self.function(what, self.kernels.roots(kernel), |body, t, x| {
-            let (statements, values) = (&body.statements, &body.values);
+            let (statements, filled) = (&body.statements, filled("out", &body.values));
             let known = |symbol: &Symbol| matches!(symbol, Symbol::RateOfRate(_));
             let given =
                 ident(if body.symbols.iter().any(known) { "accelerations" } else { "_accelerations" });
             quote! {
                 fn #name(&self, #t: T, #x: &Self::Joints, #given: &Self::Rates, out: &mut #out) {
                     #statements
-                    *out = [#(#values),*];
+                    #filled
                 }
             }
         })
@@ -133,11 +134,11 @@ impl ModuleWriter<'_> {
     fn of_joint_state(&self, kernel: Kernel, what: &str, out: &TokenStream) -> TokenStream {
         let name = ident(kernel.name());
         self.function(what, self.kernels.roots(kernel), |body, t, x| {
-            let (statements, values) = (&body.statements, &body.values);
+            let (statements, filled) = (&body.statements, filled("out", &body.values));
             quote! {
                 fn #name(&self, #t: T, #x: &Self::Joints, out: &mut #out) {
                     #statements
-                    *out = [#(#values),*];
+                    #filled
                 }
             }
         })

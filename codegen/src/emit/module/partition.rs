@@ -1,6 +1,7 @@
 //! The coordinate partition.
 
 use super::writer::ModuleWriter;
+use crate::emit::results::stored;
 use crate::emit::tokens::{ident, index};
 use crate::expr::symbol::Symbol;
 use crate::groups::Group;
@@ -126,18 +127,17 @@ impl ModuleWriter<'_> {
     fn solve(&self, name: &str, what: &str, kernel: Kernel) -> TokenStream {
         let name = ident(name);
         let (places, roots) = scheduled::stores(self.equations, kernel, self.kernels.roots(kernel));
-        let places: Vec<_> = places.into_iter().map(index).collect();
         let y = ident(if places.is_empty() { "_y" } else { "y" });
         let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
         let n_state = index(self.equations.n_state());
         self.function(what, &roots, |body, t, _| {
-            let (statements, values) = (&body.statements, &body.values);
+            let (statements, stored) = (&body.statements, stored("y", &places, &body.values));
             let charted = body.symbols.iter().any(|s| matches!(s, Symbol::Chart { .. }));
             let charts = ident(if charted { "charts" } else { "_charts" });
             quote! {
                 fn #name(&self, #t: T, #charts: &[[T; 4]; #n_charts], #y: &mut [T; #n_state]) {
                     #statements
-                    #(y[#places] = #values;)*
+                    #stored
                 }
             }
         })

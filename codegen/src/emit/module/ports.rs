@@ -1,6 +1,7 @@
 //! What goes in and comes out besides the state.
 
 use super::writer::ModuleWriter;
+use crate::emit::results::filled;
 use crate::emit::tokens::{ident, index};
 use crate::expr::symbol::Symbol;
 use crate::kernels::Kernel;
@@ -40,7 +41,7 @@ impl ModuleWriter<'_> {
             };
         }
         self.function("Writes the outputs", roots, |body, t, y| {
-            let (statements, values) = (&body.statements, &body.values);
+            let (statements, filled) = (&body.statements, filled("out", &body.values));
             let known = |s: &Symbol| matches!(s, Symbol::Acceleration { .. } | Symbol::LoopMultiplier(_));
             let (t, y, solved) = if body.symbols.iter().any(known) {
                 let n = index(self.equations.solved.roots.len());
@@ -56,7 +57,7 @@ impl ModuleWriter<'_> {
                 fn outputs(&self, #t: T, #y: &Self::State, out: &mut Self::Outputs) {
                     #solved
                     #statements
-                    *out = [#(#values),*];
+                    #filled
                 }
             }
         })

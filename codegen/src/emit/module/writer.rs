@@ -4,6 +4,7 @@ use super::tables;
 use crate::emit::data_sheet::printable;
 use crate::emit::literals::Literals;
 use crate::emit::loops;
+use crate::emit::results::filled;
 use crate::emit::tokens::{self, Body, ident};
 use crate::equations::Equations;
 use crate::expr::graph::ExprId;
@@ -88,11 +89,11 @@ impl ModuleWriter<'_> {
     pub fn filling(&self, kernel: Kernel, what: &str, ty: &str) -> TokenStream {
         let (name, ty) = (ident(kernel.name()), ident(ty));
         self.function(what, self.kernels.roots(kernel), |body, t, y| {
-            let (statements, values) = (&body.statements, &body.values);
+            let (statements, filled) = (&body.statements, filled("out", &body.values));
             quote! {
                 fn #name(&self, #t: T, #y: &Self::State, out: &mut Self::#ty) {
                     #statements
-                    *out = [#(#values),*];
+                    #filled
                 }
             }
         })
