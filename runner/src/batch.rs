@@ -69,7 +69,8 @@ impl Pack {
     }
 }
 
-/// Reads the rows of a pack. Each row is found once, not each of its numbers: that would cost as much as a short kernel.
+/// Reads the rows of a pack. Each row is found once, not each of its numbers: that would cost as much as a short
+/// kernel.
 fn gather<T: Lanes<Lane = f64>>(to: &mut [T], pack: Pack, numbers: &[f64]) {
     let n = to.len();
     let rows: [&[f64]; 8] = std::array::from_fn(|lane| match lane < T::COUNT {

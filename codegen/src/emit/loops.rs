@@ -1,8 +1,9 @@
 //! A kernel with loops as Rust tokens.
 
 use crate::emit::literals::Literals;
-use crate::emit::results::{Copied, From, evenly};
-use crate::emit::tokens::{Body, Variables, Writer, ident, index};
+use crate::emit::names::{ident, index};
+use crate::emit::results::{Copied, Source, evenly};
+use crate::emit::tokens::{Body, Variables, Writer};
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
 use crate::repeat::{Direction, Local, Shape};
@@ -84,7 +85,7 @@ impl<V: Variables> Variables for Outside<'_, V> {
 
     fn kept(&self, symbol: Symbol) -> Option<Copied> {
         let Symbol::Entry { array, row, column } = symbol else { return None };
-        let from = From { array: array_name(array).to_string(), column: Some(column), is_negative: false };
+        let from = Source { array: array_name(array).to_string(), column: Some(column), is_negative: false };
         Some(Copied { from, row })
     }
 }

@@ -4,5 +4,6 @@ pub mod data_sheet;
 pub mod literals;
 pub mod loops;
 pub mod module;
+pub mod names;
 pub mod results;
 pub mod tokens;

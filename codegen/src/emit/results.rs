@@ -1,7 +1,7 @@
 //! How a function hands over its results: in one assignment, or, where loops have computed them, by loops that copy
 //! columns of their arrays to places that are evenly apart.
 
-use crate::emit::tokens::{ident, index};
+use crate::emit::names::{ident, index};
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, quote};
 use rustc_hash::FxHashMap as HashMap;
@@ -18,13 +18,13 @@ pub struct Value {
 /// An element of an array that was filled before.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Copied {
-    pub from: From,
+    pub from: Source,
     pub row: usize,
 }
 
 /// An array, or a column of one that loops fill.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct From {
+pub struct Source {
     pub array: String,
     pub column: Option<usize>,
     /// Whether the opposite is taken.
@@ -34,7 +34,7 @@ pub struct From {
 /// Copies that are evenly apart on both sides.
 #[derive(Debug)]
 struct Run {
-    from: From,
+    from: Source,
     /// Where the first comes from and where it goes to, and how far the next is from it.
     row: usize,
     rows_apart: usize,
@@ -53,7 +53,7 @@ impl Value {
     /// The element of a buffer.
     pub fn of_buffer(array: &str, row: usize) -> Self {
         let (name, at) = (ident(array), index(row));
-        let from = From { array: array.to_owned(), column: None, is_negative: false };
+        let from = Source { array: array.to_owned(), column: None, is_negative: false };
         Self { tokens: quote! { #name[#at] }, copied: Some(Copied { from, row }) }
     }
 }
@@ -112,7 +112,7 @@ fn stored_in_loops(target: &str, places: &[usize], values: &[Value]) -> Option<T
 /// The runs among copies, by their places.
 fn runs(copies: &[(usize, &Copied)]) -> Vec<Run> {
     let mut open: HashMap<usize, &Copied> = copies.iter().copied().collect();
-    let mut of_column: HashMap<&From, Vec<(usize, usize)>> = HashMap::default();
+    let mut of_column: HashMap<&Source, Vec<(usize, usize)>> = HashMap::default();
     for (place, copied) in copies {
         of_column.entry(&copied.from).or_default().push((*place, copied.row));
     }
@@ -177,7 +177,7 @@ mod tests {
     use super::*;
 
     fn kept(row: usize, column: usize) -> Value {
-        let from = From { array: "kept0".to_owned(), column: Some(column), is_negative: column == 1 };
+        let from = Source { array: "kept0".to_owned(), column: Some(column), is_negative: column == 1 };
         let (at, column) = (index(row), index(column));
         Value { tokens: quote! { kept0[#at][#column] }, copied: Some(Copied { from, row }) }
     }

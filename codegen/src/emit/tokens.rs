@@ -1,11 +1,12 @@
 //! A tape as Rust tokens.
 
 use crate::emit::literals::Literals;
-use crate::emit::results::{Copied, From, Value};
+use crate::emit::names::ident;
+use crate::emit::results::{Copied, Source, Value};
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
 use crate::tape::{Exact, Kernel, Operation, Place};
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 use rustc_hash::FxHashMap as HashMap;
 use std::cell::Cell;
@@ -65,14 +66,6 @@ pub fn body(variables: &impl Variables, literals: &Literals, kernel: &Kernel<Sym
     Body { statements, values, symbols }
 }
 
-pub fn ident(name: &str) -> Ident {
-    Ident::new(name, Span::call_site())
-}
-
-pub fn index(value: usize) -> Literal {
-    Literal::usize_unsuffixed(value)
-}
-
 /// Writes the operations of a tape.
 pub struct Writer<'a, V> {
     tape: &'a Exact,
@@ -124,7 +117,7 @@ impl<'a, V: Variables> Writer<'a, V> {
             Operation::Variable(symbol) => self.variables.kept(*symbol),
             Operation::Negate(of) => {
                 let Copied { from, row } = self.copied(*of)?;
-                Some(Copied { from: From { is_negative: !from.is_negative, ..from }, row })
+                Some(Copied { from: Source { is_negative: !from.is_negative, ..from }, row })
             }
             _ => None,
         }

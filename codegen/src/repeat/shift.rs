@@ -347,7 +347,8 @@ impl Search {
         }
     }
 
-    /// The users of a term without a counterpart that are the only ones of their kind and colour, in the order of these.
+    /// The users of a term without a counterpart that are the only ones of their kind and colour, in the order of
+    /// these.
     fn only_ones(
         &self,
         place: Place,

@@ -28,7 +28,8 @@ pub trait Forced<M = ()>: Ode<M> {
         forces: &[Self::Scalar],
         dy: &mut Self::State,
     );
-    /// The same, of which the slopes of the [rates](Forced::rates) alone are asked for: all else in `dy` may be anything.
+    /// The same, of which the slopes of the [rates](Forced::rates) alone are asked for: all else in `dy` may be
+    /// anything.
     fn accelerations(
         &self,
         model: &M,

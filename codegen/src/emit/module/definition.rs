@@ -2,8 +2,8 @@
 
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
+use crate::emit::names::{ident, index};
 use crate::emit::results::filled;
-use crate::emit::tokens::{ident, index};
 use crate::kernels::Kernel;
 use gyro_model::{Computation, Model, Number, Parameter, ParameterRule};
 use proc_macro2::{Literal, TokenStream};

@@ -1,8 +1,8 @@
 //! The equations of motion in maximal coordinates, and the projection.
 
 use super::writer::ModuleWriter;
+use crate::emit::names::{ident, index};
 use crate::emit::results::{Value, filled};
-use crate::emit::tokens::{ident, index};
 use crate::expr::symbol::Symbol;
 use crate::groups::Group;
 use crate::kernels::Kernel;

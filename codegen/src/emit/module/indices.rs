@@ -5,7 +5,7 @@
 //! of others.
 
 use super::writer::ModuleWriter;
-use crate::emit::tokens::{ident, index};
+use crate::emit::names::{ident, index};
 use crate::joint_space::JointSpace;
 use gyro_model::{Attachment, CoordinateKind};
 use proc_macro2::TokenStream;

@@ -2,8 +2,9 @@
 
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
+use crate::emit::names::{ident, index};
 use crate::emit::results::{Value, filled, stored};
-use crate::emit::tokens::{Body, ident, index};
+use crate::emit::tokens::Body;
 use crate::joint_space::JointSpace;
 use crate::kernels::Kernel;
 use crate::scheduled::{self, JointPlace};

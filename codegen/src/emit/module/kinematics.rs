@@ -1,7 +1,7 @@
 //! Derivatives of the constraints.
 
 use super::writer::ModuleWriter;
-use crate::emit::tokens::{ident, index};
+use crate::emit::names::{ident, index};
 use crate::equations::Sparse;
 use crate::groups::Group;
 use crate::kernels::Kernel;

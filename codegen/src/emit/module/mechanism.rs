@@ -2,7 +2,7 @@
 
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
-use crate::emit::tokens::{self, ident, index};
+use crate::emit::names::{self, ident, index};
 use crate::kernels::Kernel;
 use crate::scheduled;
 use gyro_model::{JointKind, RowOwner, RowUnit, Start};
@@ -99,7 +99,7 @@ impl ModuleWriter<'_> {
                 RowOwner::Coupler(coupler) => ("Coupler", coupler),
                 RowOwner::Driver(driver) => ("Driver", driver),
             };
-            let (owner, index) = (ident(owner), tokens::index(index));
+            let (owner, index) = (ident(owner), names::index(index));
             quote! { gyro_sim::RowInfo { owner: gyro_sim::Owner::#owner(#index), is_length: #is_length } }
         });
         let (couplers, drivers) =

@@ -1,8 +1,8 @@
 //! What controllers of robots ask for, a trait for each group.
 
 use super::writer::ModuleWriter;
+use crate::emit::names::{ident, index};
 use crate::emit::results::filled;
-use crate::emit::tokens::{ident, index};
 use crate::expr::symbol::Symbol;
 use crate::kernels::Kernel;
 use proc_macro2::TokenStream;

@@ -1,8 +1,8 @@
 //! The coordinate partition.
 
 use super::writer::ModuleWriter;
+use crate::emit::names::{ident, index};
 use crate::emit::results::stored;
-use crate::emit::tokens::{ident, index};
 use crate::expr::symbol::Symbol;
 use crate::groups::Group;
 use crate::kernels::Kernel;

@@ -1,7 +1,8 @@
 //! Where the variables of a module come from: the state and other arguments.
 
 use super::writer::ModuleWriter;
-use crate::emit::tokens::{Variables, ident, index};
+use crate::emit::names::{ident, index};
+use crate::emit::tokens::Variables;
 use crate::equations::Argument;
 use crate::expr::symbol::Symbol;
 use proc_macro2::TokenStream;

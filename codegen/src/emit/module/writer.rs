@@ -4,8 +4,9 @@ use super::tables;
 use crate::emit::data_sheet::printable;
 use crate::emit::literals::Literals;
 use crate::emit::loops;
+use crate::emit::names::{ident, index};
 use crate::emit::results::filled;
-use crate::emit::tokens::{self, Body, ident};
+use crate::emit::tokens::{self, Body};
 use crate::equations::Equations;
 use crate::expr::graph::ExprId;
 use crate::expr::schedule::Operations;
@@ -73,7 +74,7 @@ impl ModuleWriter<'_> {
     pub fn tables_of_motions(&self) -> TokenStream {
         let tables = self.equations.tables.iter().enumerate().map(|(table, spline)| {
             let (knots, pieces) = table_names(table);
-            let (n_knots, n_pieces) = (tokens::index(spline.knots.len()), tokens::index(spline.pieces.len()));
+            let (n_knots, n_pieces) = (index(spline.knots.len()), index(spline.pieces.len()));
             let doc = format!(" Times of the points of `{}`, s.", printable(&spline.source));
             quote! {
                 #[doc = #doc]
