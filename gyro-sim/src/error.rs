@@ -70,16 +70,6 @@ pub enum Error {
         /// The step that stability allows, s.
         step: f64,
     },
-    /// The forces of contacts are not determined: friction in proportion to a reaction to which it adds may jam, or no
-    /// phases of the contacts are consistent.
-    Jammed {
-        /// Time, s.
-        t: f64,
-        /// Index of the contact's coordinate in the state.
-        index: u16,
-        /// How much friction a unit of friction adds by way of the reactions, at most: from 1 on it may jam.
-        gain: f64,
-    },
     /// A setting of the solver, or a step, that is not a valid step length.
     Setting {
         /// Its name.
@@ -134,11 +124,6 @@ impl fmt::Display for Error {
                     "at t = {t} s the tolerance cannot be met: element {index} of the state would need steps as short as {step:e} s"
                 )
             }
-            Self::Jammed { t, index, gain } => write!(
-                f,
-                "at t = {t} s the forces of the contact on element {index} of the state are not determined: a unit of friction \
-                 adds up to {gain:e} to itself by way of the reactions that it grows with, and from 1 on it may jam"
-            ),
             Self::Setting { setting, value } => write!(f, "{setting} = {value} s is not a valid step length"),
             Self::InvalidEndTime { t, t_end } => write!(
                 f,

@@ -176,7 +176,7 @@ impl Steps {
         };
         taken.map_err(|error| {
             let mechanism = &self.threads[0].dynamics.mechanism;
-            errors::run(py, &describe_in(mechanism, Some(mechanism.joint_layout()), &error))
+            errors::run(py, &describe_in(mechanism, Some(mechanism.joint_layout()), error))
         })
     }
 

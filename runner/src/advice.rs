@@ -237,10 +237,7 @@ impl Plan<'_> {
             Error::StepTooShort { .. } => self.double().or_else(|| self.coarser()).into_iter().collect(),
             Error::TooManySteps { t, steps } => self.beyond(t, steps, met, fastest),
             Error::Stiff { t, .. } => self.beyond(t, met.accepted + met.rejected, met, fastest),
-            Error::Jammed { .. }
-            | Error::Setting { .. }
-            | Error::InvalidEndTime { .. }
-            | Error::Tolerance { .. } => Vec::new(),
+            Error::Setting { .. } | Error::InvalidEndTime { .. } | Error::Tolerance { .. } => Vec::new(),
         };
         advice.into_iter().filter(|advice| self.accepts(advice)).collect()
     }

@@ -1,7 +1,7 @@
 //! Messages for failures, with names instead of indices.
 
 use crate::advice::{Advice, try_words};
-use gyro_sim::{Error, JointLayout, JointPlace, Mechanism, Owner, Passage};
+use gyro_sim::{Error, JointLayout, JointPlace, Mechanism, Owner, Passage, contact};
 use std::iter::repeat_n;
 use std::{fmt, io};
 
@@ -51,8 +51,8 @@ impl Failure {
     }
 }
 
-/// The message of a solver error: when, which part and how much.
-pub fn describe<M: Mechanism>(mechanism: &M, error: &Error) -> String {
+/// The message of an error: when, which part and how much.
+pub fn describe<M: Mechanism>(mechanism: &M, error: impl Into<contact::Error>) -> String {
     describe_in(mechanism, None, error)
 }
 
@@ -65,11 +65,31 @@ pub(crate) fn behind<M: Mechanism>(mechanism: &M, passage: &Passage) -> String {
 }
 
 /// The same for a motion in joint coordinates, if a layout is given.
-pub fn describe_in<M: Mechanism>(mechanism: &M, layout: Option<&JointLayout<'_>>, error: &Error) -> String {
+pub fn describe_in<M: Mechanism>(
+    mechanism: &M,
+    layout: Option<&JointLayout<'_>>,
+    error: impl Into<contact::Error>,
+) -> String {
     let element = |index: &u16| match layout {
         None => element(mechanism, usize::from(*index)),
         Some(layout) => joint_element(mechanism, layout, usize::from(*index)),
     };
+    match error.into() {
+        contact::Error::Solver(error) => solver_error(mechanism, element, &error),
+        contact::Error::Jammed { t, index, gain } if gain < 1.0 => format!(
+            "at t = {t} s no motion is consistent with stops and friction, among them those on {}",
+            element(&index).trim_start_matches("the position of ")
+        ),
+        contact::Error::Jammed { t, index, gain } => format!(
+            "at t = {t} s friction on {} may jam: a unit of it adds up to {gain:.4e} to itself by way of the reactions \
+             that it grows with, and from 1 on there may be no motion, or several; lower its coefficient or radius",
+            element(&index).trim_start_matches("the position of ")
+        ),
+    }
+}
+
+/// The message of an error that has nothing to do with contacts; `element` names an element of the state.
+fn solver_error<M: Mechanism>(mechanism: &M, element: impl Fn(&u16) -> String, error: &Error) -> String {
     match error {
         Error::NotFinite { t, index } => format!("at t = {t} s {} is no longer finite", element(index)),
         Error::StepTooShort { t, step, index } => format!(
@@ -86,15 +106,6 @@ pub fn describe_in<M: Mechanism>(mechanism: &M, layout: Option<&JointLayout<'_>>
         ),
         Error::Tolerance { relative, smallest, .. } => format!(
             "a tolerance of {relative:e} cannot be met: at least {smallest:.1e} in this precision, and finite"
-        ),
-        Error::Jammed { t, index, gain } if *gain < 1.0 => format!(
-            "at t = {t} s no motion is consistent with stops and friction, among them those on {}",
-            element(index).trim_start_matches("the position of ")
-        ),
-        Error::Jammed { t, index, gain } => format!(
-            "at t = {t} s friction on {} may jam: a unit of it adds up to {gain:.4e} to itself by way of the reactions \
-             that it grows with, and from 1 on there may be no motion, or several; lower its coefficient or radius",
-            element(index).trim_start_matches("the position of ")
         ),
         Error::NoConvergence { t, violation, owner } => format!(
             "at t = {t} s the constraints of {} cannot be met: {violation:e} remains after Newton's iterations",
@@ -191,14 +202,6 @@ mod tests {
                  pose, or",
             ),
             (
-                Error::Jammed { t: 0.5, index: 2, gain: 1.25 },
-                "at t = 0.5 s friction on body `rotor` may jam: a unit of it adds up to 1.2500e0 to itself",
-            ),
-            (
-                Error::Jammed { t: 0.5, index: 2, gain: 0.0 },
-                "at t = 0.5 s no motion is consistent with stops and friction, among them those on body `rotor`",
-            ),
-            (
                 Error::Jump { t: 1.0, change: 0.5, limit: 1e-2, owner: Owner::Driver(0) },
                 "at t = 1 s the constraints of driver `crank` can be met only by a change of 5e-1 where 1e-2 is safe",
             ),
@@ -207,11 +210,29 @@ mod tests {
                 "at t = 0.5 s the constraints of coupler `gear` cannot be met: 3e-3 remains",
             ),
         ] {
-            let found = describe(&spinner, &error);
+            let found = describe(&spinner, error);
             assert!(found.starts_with(words), "{found}");
             assert!(!found.contains("try"), "{found}");
         }
     }
+
+    #[test]
+    fn contacts_that_cannot_go_on_are_named() {
+        for (error, words) in [
+            (
+                contact::Error::Jammed { t: 0.5, index: 2, gain: 1.25 },
+                "at t = 0.5 s friction on body `rotor` may jam: a unit of it adds up to 1.2500e0 to itself",
+            ),
+            (
+                contact::Error::Jammed { t: 0.5, index: 2, gain: 0.0 },
+                "at t = 0.5 s no motion is consistent with stops and friction, among them those on body `rotor`",
+            ),
+        ] {
+            let found = describe(&Spinner::<f64>::default(), error);
+            assert!(found.starts_with(words), "{found}");
+        }
+    }
+
     #[test]
     fn elements_of_a_joint_state_are_named_by_its_layout() {
         let layout = JointLayout {
@@ -235,7 +256,7 @@ mod tests {
             (22, "the work done"),
         ] {
             let error = Error::NotFinite { t: 0.25, index };
-            let found = describe_in(&Spinner::<f64>::default(), Some(&layout), &error);
+            let found = describe_in(&Spinner::<f64>::default(), Some(&layout), error);
             assert!(found.starts_with(&format!("at t = 0.25 s {words} is no longer")), "{index}: {found}");
         }
     }

@@ -107,7 +107,7 @@ fn what_cannot_be_closed_is_named() {
     let fails = |linkage: &Linkage<f64>, mut x: [f64; 6]| {
         CloseLoops::new(linkage).correct(linkage, 0.25, &mut x).expect_err("this is not closed")
     };
-    let words = |error| describe_in(&linkage, Some(linkage.joint_layout()), &error);
+    let words = |error| describe_in(&linkage, Some(linkage.joint_layout()), error);
     // Towards the knee below.
     let jump = fails(&linkage, [x[0], x[1] - 1.5, x[2] - 0.7, 0.0, 0.0, 0.0]);
     assert!(matches!(jump, Error::Jump { t: 0.25, limit: 0.5, owner: KNEE, .. }), "{jump:?}");

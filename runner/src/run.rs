@@ -22,7 +22,7 @@ use crate::{
     Touch, Tracker, Watch, describe_in,
 };
 use gyro_sim::{
-    CorrectedDynamics, Dynamics, Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns,
+    CorrectedDynamics, Dynamics, Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns, contact,
 };
 use nanoserde::{DeBin, SerBin};
 use std::io;
@@ -134,21 +134,26 @@ pub fn run_by<M: Partition<Scalar: Real> + Clone + 'static>(
     match outcome {
         Ok(()) => Ok(run.summary),
         Err(Halt::Output(error)) => Err(Failure::Output(error)),
-        Err(Halt::Solver(error)) => {
+        Err(Halt::Motion(error)) => {
             run.tell_state(&mut told).map_err(Failure::Output)?;
-            let passed =
-                run.summary.statistics.first_passage.filter(|_| !matches!(error, Error::Singular { .. }));
-            let words = describe_in(run.mechanism, layout(run.mechanism, builder, approach), &error)
+            let solver = match error {
+                contact::Error::Solver(error) => Some(error),
+                contact::Error::Jammed { .. } => None,
+            };
+            let is_singular = matches!(solver, Some(Error::Singular { .. }));
+            let passed = run.summary.statistics.first_passage.filter(|_| !is_singular);
+            let words = describe_in(run.mechanism, layout(run.mechanism, builder, approach), error)
                 + &passed.map_or(String::new(), |passage| behind(run.mechanism, &passage));
             let plan = Plan { settings: &settings, approach, offers: &offers };
             // The steps' length is asked about only where stability may limit it.
-            let asks = matches!(error, Error::Stiff { .. } | Error::TooManySteps { .. });
+            let asks = matches!(solver, Some(Error::Stiff { .. } | Error::TooManySteps { .. }));
             if asks && builder.leaves_to_explain() {
                 return Err(Failure::Unexplained(words));
             }
             let linear = asks.then(|| run.linearised(builder, run.read_at)).flatten();
             let fastest = linear.as_ref().map(fastest_rate);
-            Err(Failure::Run { words, advice: plan.after(&error, &run.summary.statistics, fastest) })
+            let advice = solver.map(|error| plan.after(&error, &run.summary.statistics, fastest));
+            Err(Failure::Run { words, advice: advice.unwrap_or_default() })
         }
     }
 }
@@ -186,13 +191,19 @@ pub(crate) fn layout<'a, M: Partition<Scalar: Real>>(
 
 /// Why a run ends before its time.
 enum Halt {
-    Solver(Error),
+    Motion(contact::Error),
     Output(io::Error),
 }
 
 impl From<Error> for Halt {
     fn from(error: Error) -> Self {
-        Self::Solver(error)
+        Self::Motion(error.into())
+    }
+}
+
+impl From<contact::Error> for Halt {
+    fn from(error: contact::Error) -> Self {
+        Self::Motion(error)
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::motion::MotionBuilder;
 use crate::run::{begin, layout, run_by, scheduled, state};
 use crate::{Approach, Failure, Schedule, Settings, Start, describe_in};
-use gyro_sim::{Error, Partition, Real, Scalar, Statistics};
+use gyro_sim::{Partition, Real, Scalar, Statistics, contact};
 use gyro_yardstick::{Measured, beside};
 use nanoserde::{DeBin, SerBin};
 use std::time::Duration;
@@ -38,7 +38,7 @@ pub fn time_by<M: Partition<Scalar: Real> + Clone + 'static>(
     let once = || -> Result<(), Failure> {
         let mut motion = begin(builder, mechanism, approach, (&y, start))?;
         let layout = layout(mechanism, builder, approach);
-        let in_words = |error: Error| Failure::run(describe_in(mechanism, layout, &error));
+        let in_words = |error: contact::Error| Failure::run(describe_in(mechanism, layout, error));
         if approach.tolerance.is_some() {
             // As the motion counts time: in single precision the end may come before this number.
             let t_end = M::Scalar::constant(settings.t_end).to_f64();
@@ -55,7 +55,7 @@ pub fn time_by<M: Partition<Scalar: Real> + Clone + 'static>(
                     motion.resolve(mechanism, &mut |_| ());
                 }
                 if segment.corrects {
-                    motion.correct(mechanism).map_err(in_words)?;
+                    motion.correct(mechanism).map_err(|error| in_words(error.into()))?;
                 }
             }
         }

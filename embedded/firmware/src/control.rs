@@ -108,7 +108,6 @@ fn report(error: Error) {
         Error::StepTooShort { t, .. }
         | Error::TooManySteps { t, .. }
         | Error::Stiff { t, .. }
-        | Error::Jammed { t, .. }
         | Error::InvalidEndTime { t, .. } => ("the steps are too short", t),
         Error::Tolerance { .. } | Error::Setting { .. } => ("the tolerance cannot be met", 0.0),
     };

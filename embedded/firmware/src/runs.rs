@@ -2,7 +2,6 @@
 
 use crate::{board, panic, print};
 use embedded_scenes::runs::{Bits, Outcome, runs};
-use gyro_sim::Error;
 
 /// All runs in one precision.
 pub fn run<T: Bits>() -> ! {
@@ -15,7 +14,7 @@ pub fn run<T: Bits>() -> ! {
 }
 
 /// A line: what a run came to.
-pub(crate) fn show<T: Bits>(name: &str, outcome: Result<Outcome<T>, Error>) {
+pub(crate) fn show<T: Bits, E>(name: &str, outcome: Result<Outcome<T>, E>) {
     print::text("run ");
     print::text(T::NAME);
     print::text(" ");

@@ -5,9 +5,9 @@ use crate::kernels::{Clock, Work};
 use crate::mechanisms::stabilised_gimbal::{Parameters, StabilisedGimbal};
 use crate::runs::{Bits, Outcome};
 use crate::simulator::TICK;
-use gyro_sim::contact::{Contact, JointInputs, Record, Stepped};
+use gyro_sim::contact::{Contact, Error, JointInputs, Record, Stepped};
 use gyro_sim::sampled::{Controller, Pid, Quantised};
-use gyro_sim::{Error, JointOutputs, JointSpace, Mechanism, Real};
+use gyro_sim::{JointOutputs, JointSpace, Mechanism, Real};
 
 /// What tables call its run.
 pub const NAME: &str = "stabilised joint";

@@ -3,12 +3,12 @@
 use super::equations::{Contacts, Forced, Kept};
 use super::guards::{Guards, guards, noise, passed};
 use super::settle::{Change, Ledger, Next, Record};
-use super::{Contact, Phase};
+use super::{Contact, Error, Phase};
 use crate::contract::Storage;
 use crate::events::{Found, first_falling};
 use crate::integrate::Method;
 use crate::solver::Mark;
-use crate::{Control, Correction, Error, Real, Solver, Statistics, Uncorrected};
+use crate::{Control, Correction, Real, Solver, Statistics, Uncorrected};
 
 /// A motion with contacts, by any method that is explicit.
 #[derive(Clone, Debug)]
@@ -150,7 +150,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     ///
     /// # Errors
     /// As [`Solver::interpolate`].
-    pub fn forces_at<M>(&mut self, model: &M, t: T) -> Result<[T; N], Error>
+    pub fn forces_at<M>(&mut self, model: &M, t: T) -> Result<[T; N], crate::Error>
     where
         D: Forced<M, Scalar = T, State = S>,
         A: Method<Contacts<D, T, N>, M>,
@@ -164,8 +164,8 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     /// Goes on until `t_end`, through all events on the way.
     ///
     /// # Errors
-    /// [`Error`] of the solver; [`Error::StepTooShort`] if events follow each other without time between them;
-    /// [`Error::Jammed`] if the forces of contacts are not determined.
+    /// [`Error::Solver`], among them [`StepTooShort`](crate::Error::StepTooShort) if events follow each other without
+    /// time between them; [`Error::Jammed`] if the forces of contacts are not determined.
     pub fn advance_to<M>(&mut self, model: &M, t_end: T) -> Result<(), Error>
     where
         D: Forced<M, Scalar = T, State = S>,
@@ -214,7 +214,8 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         };
         self.ledger.stalled = if next.theta > T::constant(0.0) { 0 } else { self.ledger.stalled + 1 };
         if self.ledger.stalled > MOST_STALLED {
-            return Err(Error::StepTooShort { t: self.mark.time().to_f64(), step: 0.0, index: 0 });
+            let t = self.mark.time().to_f64();
+            return Err(crate::Error::StepTooShort { t, step: 0.0, index: 0 }.into());
         }
         self.end_at(model, h, &next)?;
         self.pending = Some(Pending::Event(next, h));
@@ -240,7 +241,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     /// One step of length `h`; what has happened in it is decided at its end.
     ///
     /// # Errors
-    /// [`Error`] of the solver, with state and time as they were before.
+    /// [`Error`], with state and time as they were before.
     pub fn step<M>(&mut self, model: &M, h: T) -> Result<(), Error>
     where
         D: Forced<M, Scalar = T, State = S>,
@@ -280,7 +281,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     ///
     /// # Errors
     /// As [`Solver::interpolate`].
-    pub fn interpolate<M>(&mut self, model: &M, t: T, out: &mut S) -> Result<(), Error>
+    pub fn interpolate<M>(&mut self, model: &M, t: T, out: &mut S) -> Result<(), crate::Error>
     where
         D: Forced<M, Scalar = T, State = S>,
         A: Method<Contacts<D, T, N>, M>,
@@ -302,7 +303,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     ///
     /// # Errors
     /// As [`Solver::correct`].
-    pub fn correct<M>(&mut self, model: &M) -> Result<(), Error>
+    pub fn correct<M>(&mut self, model: &M) -> Result<(), crate::Error>
     where
         D: Forced<M, Scalar = T, State = S>,
         C: Correction<D, M>,
@@ -328,13 +329,13 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     }
 
     /// Where friction may jam no step leads on, for this one reason.
-    fn reason(&self, error: Error) -> Error {
+    fn reason(&self, error: crate::Error) -> Error {
         let equations = self.solver.dynamics();
         match (error, equations.jam.get()) {
-            (Error::NotFinite { .. } | Error::StepTooShort { .. }, Some(jam)) => {
+            (crate::Error::NotFinite { .. } | crate::Error::StepTooShort { .. }, Some(jam)) => {
                 equations.jammed(self.mark.time(), &jam)
             }
-            _ => error,
+            _ => error.into(),
         }
     }
 
@@ -382,7 +383,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         let [y, scratch] = &mut self.scratch;
         let mut values = |theta: T| {
             let t = solver.within(model, theta, y)?;
-            Ok::<_, Error>(guards(solver.dynamics(), model, (t, y), scratch))
+            Ok::<_, crate::Error>(guards(solver.dynamics(), model, (t, y), scratch))
         };
         let begin = values(zero)?.0;
         let first = first_falling(&mut values)?;

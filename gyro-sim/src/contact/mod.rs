@@ -69,7 +69,7 @@
 //! Newton's method for `F_k = ∓(c_k + μ_k |R_k(F)|)`. Of a change of friction `L = (μ_k |∂R_k/∂F_j|)` bounds what comes
 //! back. Where the spectral radius of L is less than one there is exactly one solution, and each iteration comes nearer
 //! to it. Elsewhere friction may jam (Painlevé): there may be no solution, or several. The motion then ends in
-//! [`Error::Jammed`](crate::Error::Jammed), and so it does where no combination of phases is consistent.
+//! [`Error::Jammed`], and so it does where no combination of phases is consistent.
 //!
 //! # Order under steps of fixed length
 //! [`Hybrid::step`], and [`Stepped`] for small machines, decide at the step's end: coordinates beyond a stop are set
@@ -79,6 +79,7 @@
 //! none, so that what bounces comes to rest.
 
 mod equations;
+mod error;
 mod guards;
 mod hybrid;
 mod joint;
@@ -89,6 +90,7 @@ mod small;
 mod stepped;
 
 pub use equations::{Contacts, Forced, Kept};
+pub use error::Error;
 pub use hybrid::Hybrid;
 pub use joint::{JointInputs, LoadedJointInputs, joint_accelerations};
 pub use settle::{Change, Record};

@@ -3,8 +3,8 @@
 use super::equations::{Contacts, Forced, LARGE, Local, bounds};
 use super::loads::{Acting, Jam, Loads};
 use super::small::{at, not_below_rounding, solve};
-use super::{Contact, Phase};
-use crate::{Error, Real};
+use super::{Contact, Error, Phase};
+use crate::Real;
 
 /// Inequalities may be violated by this part of what stands in them: they are computed from roots that are rounded.
 const ROUNDING: f64 = 1e-10;

@@ -4,8 +4,8 @@ use super::equations::{Contacts, Forced};
 use super::guards::{Guards, guards};
 use super::resolve::{Hit, impulses, work};
 use super::small::{at, set};
-use super::{Contact, Phase};
-use crate::{Error, Real};
+use super::{Contact, Error, Phase};
+use crate::Real;
 
 /// A rebound slower than this part of the fastest impact is none.
 const SLOWEST: f64 = 1e-12;

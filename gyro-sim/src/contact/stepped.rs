@@ -3,10 +3,10 @@
 use super::equations::{Contacts, Forced};
 use super::guards::guards;
 use super::settle::{Change, Ledger, Record};
-use super::{Contact, Phase};
+use super::{Contact, Error, Phase};
 use crate::contract::Storage;
 use crate::correct::{check_finite, check_time};
-use crate::{Error, Real, Rk4};
+use crate::{Real, Rk4};
 
 /// A motion with contacts by RK4 in steps of fixed length, whose time and state are the caller's: what a
 /// microcontroller has place and time for. What happens in a step is decided at its end, as
@@ -69,8 +69,9 @@ impl<D, S: Storage<T>, T: Real, const N: usize> Stepped<D, S, T, N> {
     /// Advances `y` from `t` by `n_steps` steps of length `h`.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if the state is not finite afterwards, [`Error::InvalidEndTime`] if time or step are not
-    /// finite, [`Error::Jammed`] if the forces of contacts are not determined.
+    /// [`Error::Jammed`] if the forces of contacts are not determined; of the solver,
+    /// [`NotFinite`](crate::Error::NotFinite) if the state is not finite afterwards, and
+    /// [`InvalidEndTime`](crate::Error::InvalidEndTime) if time or step are not finite.
     pub fn advance<M>(&mut self, model: &M, t: T, h: T, n_steps: u32, y: &mut S) -> Result<(), Error>
     where
         D: Forced<M, Scalar = T, State = S>,
@@ -94,7 +95,7 @@ impl<D, S: Storage<T>, T: Real, const N: usize> Stepped<D, S, T, N> {
         }
         match self.equations.jam.take() {
             Some(jam) => Err(self.equations.jammed(end, &jam)),
-            None => check_finite(end, y.as_ref()),
+            None => Ok(check_finite(end, y.as_ref())?),
         }
     }
 

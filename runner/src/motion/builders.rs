@@ -172,7 +172,7 @@ pub(super) fn in_joints<M: JointSpace<Scalar: Real>>(
 ) -> Result<(M::Joints, CloseLoops<M>, Approach), String> {
     let (mut x, mut closing) = (joints(mechanism, y), CloseLoops::new(mechanism));
     let layout = mechanism.joint_layout();
-    let in_words = |error| describe_in(mechanism, Some(layout), &error);
+    let in_words = |error| describe_in(mechanism, Some(layout), error);
     closing.correct(mechanism, Scalar::constant(0.0), &mut x).map_err(in_words)?;
     let has_loops = !layout.closure_rows.is_empty();
     let correction =

@@ -8,7 +8,7 @@ use crate::touch::Touch;
 use crate::watch::What;
 use gyro_sim::{
     CorrectedDynamics, Dynamics, Error, JointLayout, JointPlace, Kinematics, Mechanism, Partition,
-    Projection, Real, Statistics,
+    Projection, Real, Statistics, contact,
 };
 use nanoserde::{DeBin, SerBin};
 use std::fmt::Debug;
@@ -22,13 +22,13 @@ pub trait Motion<M: Mechanism> {
     /// One step of this length.
     ///
     /// # Errors
-    /// [`Error`] of the solver.
-    fn step(&mut self, mechanism: &M, h: f64) -> Result<(), Error>;
+    /// [`contact::Error`], where nothing touches of the solver.
+    fn step(&mut self, mechanism: &M, h: f64) -> Result<(), contact::Error>;
     /// One step under error control, not beyond `t_end`.
     ///
     /// # Errors
-    /// [`Error`] of the solver.
-    fn step_towards(&mut self, mechanism: &M, t_end: f64) -> Result<(), Error>;
+    /// [`contact::Error`], where nothing touches of the solver.
+    fn step_towards(&mut self, mechanism: &M, t_end: f64) -> Result<(), contact::Error>;
     /// Corrects the state.
     ///
     /// # Errors

@@ -8,6 +8,7 @@ use crate::approach::{Approach, Correction as Keeping, Integrator};
 use gyro_sim::integrate::Method;
 use gyro_sim::{
     Control, Correction, Dop853, Error, Kutta4, Mechanism, Real, Scalar, Solver, Statistics, Tsit5, When,
+    contact,
 };
 use std::fmt::Debug;
 
@@ -109,11 +110,11 @@ macro_rules! motion {
             A: Method<Fed<L, M>, M>,
             C: Correction<L, M>,
         {
-            fn step(&mut self, mechanism: &M, h: f64) -> Result<(), Error> {
-                self.0.step(mechanism, Scalar::constant(h))
+            fn step(&mut self, mechanism: &M, h: f64) -> Result<(), contact::Error> {
+                Ok(self.0.step(mechanism, Scalar::constant(h))?)
             }
-            fn step_towards(&mut $self, $mechanism: &M, $t_end: f64) -> Result<(), Error> {
-                $towards
+            fn step_towards(&mut $self, $mechanism: &M, $t_end: f64) -> Result<(), contact::Error> {
+                Ok($towards?)
             }
             fn correct(&mut self, mechanism: &M) -> Result<(), Error> {
                 self.0.correct(&mechanism)
@@ -156,4 +157,7 @@ motion!(Adaptive, |self, mechanism, t_end| {
     self.0.step_towards(mechanism, Scalar::constant(t_end))
 });
 
-motion!(Fixed, |self, mechanism, t_end| self.step(mechanism, t_end - self.time()));
+motion!(Fixed, |self, mechanism, t_end| {
+    let h = t_end - self.time();
+    self.0.step(mechanism, Scalar::constant(h))
+});

@@ -8,7 +8,7 @@ use super::moving::control;
 use crate::approach::{Approach, Integrator};
 use crate::touch::Touch;
 use crate::watch::What;
-use gyro_sim::contact::{Contact, Contacts, Hybrid, Phase};
+use gyro_sim::contact::{self, Contact, Contacts, Hybrid, Phase};
 use gyro_sim::integrate::Method;
 use gyro_sim::{
     Correction, Dop853, Error, Joint, JointPlace, JointSpace, Kutta4, Real, Scalar, Statistics, Tsit5,
@@ -85,7 +85,7 @@ where
 
 /// One step, not beyond a time.
 type Towards<M, A, C> =
-    fn(&mut Touching<M, A, C>, &M, <M as gyro_sim::Mechanism>::Scalar) -> Result<(), Error>;
+    fn(&mut Touching<M, A, C>, &M, <M as gyro_sim::Mechanism>::Scalar) -> Result<(), contact::Error>;
 
 /// A contact along a coordinate of the joint state.
 fn contact<M: JointSpace<Scalar: Real>>(mechanism: &M, touch: &Touch) -> Result<Contact<M::Scalar>, String> {
@@ -129,11 +129,11 @@ where
     A: Method<Contacts<Fed<Joint, M>, M::Scalar, MOST>, M>,
     C: Correction<Joint, M>,
 {
-    fn step(&mut self, mechanism: &M, h: f64) -> Result<(), Error> {
+    fn step(&mut self, mechanism: &M, h: f64) -> Result<(), contact::Error> {
         self.hybrid.move_by(mechanism, Scalar::constant(h))
     }
 
-    fn step_towards(&mut self, mechanism: &M, t_end: f64) -> Result<(), Error> {
+    fn step_towards(&mut self, mechanism: &M, t_end: f64) -> Result<(), contact::Error> {
         let mut t_end = t_end;
         if let Some(course) = &mut self.course {
             if let Some(knot) = course.pass::<M::Scalar>(self.hybrid.time().to_f64()) {

@@ -43,7 +43,7 @@ fn refuse_misfit<M: Partition>(mechanism: &M, length: usize, start: &Start) -> R
 pub(super) fn refuse_singular<M: Partition>(mechanism: &M, start: &M::State) -> Result<(), Failure> {
     let t = Scalar::constant(0.0);
     match mechanism.newton_step(t, &mechanism.independent(t, start), &mut start.clone()) {
-        Err(error @ Error::Singular { .. }) => Err(Failure::run(describe(mechanism, &error))),
+        Err(error @ Error::Singular { .. }) => Err(Failure::run(describe(mechanism, error))),
         _ => Ok(()),
     }
 }

@@ -168,7 +168,7 @@ where
             common.keeper.finish(failure.is_none(), &mut block.numbers);
             if let Some(error) = failure {
                 let mechanism = one(&job.parameters);
-                note(block, row + lane, &describe_in(&mechanism, Some(mechanism.joint_layout()), &error));
+                note(block, row + lane, &describe_in(&mechanism, Some(mechanism.joint_layout()), error));
             }
         }
     }

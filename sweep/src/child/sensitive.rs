@@ -314,5 +314,5 @@ fn words<M: JointSpace>(mechanism: &M, n: usize, error: &Error) -> String {
         Error::StepTooShort { t, step, index } => Error::StepTooShort { t, step, index: of_state(index) },
         other => other,
     };
-    describe_in(mechanism, Some(mechanism.joint_layout()), &error)
+    describe_in(mechanism, Some(mechanism.joint_layout()), error)
 }

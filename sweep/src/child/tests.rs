@@ -283,7 +283,7 @@ proptest! {
             };
             let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
             prop_assert_eq!(bits(numbers), bits(&expected), "scenario {}: {:?}", k, failure);
-            let words = failure.map(|error| describe_in(&built, Some(built.joint_layout()), &error));
+            let words = failure.map(|error| describe_in(&built, Some(built.joint_layout()), error));
             prop_assert_eq!(error, words.as_deref());
         }
     }

@@ -1,8 +1,9 @@
 //! Friction in proportion to reactions that depend on all forces, friction among them.
 
 use super::{Cart, Mass, Random, fine, random_cart};
+use crate::contact::Error;
 use crate::contact::{Contact, Forced, Hybrid, Phase};
-use crate::{Dop853, Error, Kutta4, Ode, Tsit5};
+use crate::{Dop853, Kutta4, Ode, Tsit5};
 use core::array::from_fn;
 use core::ops::Range;
 

@@ -146,7 +146,7 @@ where
                 numbers.clear();
                 self.keepers[index].finish(failure.is_none(), &mut numbers);
                 let mechanism = &mechanisms[index];
-                let words = |error| describe_in(mechanism, Some(mechanism.joint_layout()), &error);
+                let words = |error| describe_in(mechanism, Some(mechanism.joint_layout()), error);
                 open.end(place, &numbers, failure.map(words).as_deref());
             }
             open.tell(tell)?;

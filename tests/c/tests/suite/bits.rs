@@ -185,7 +185,6 @@ fn status(outcome: &Result<(), Error>) -> f64 {
         Err(Error::StepTooShort { .. }) => 5.0,
         Err(Error::TooManySteps { .. }) => 6.0,
         Err(Error::Stiff { .. }) => 7.0,
-        Err(Error::Jammed { .. }) => unreachable!("it has no contacts"),
         Err(Error::Setting { .. }) => 8.0,
         Err(Error::InvalidEndTime { .. }) => 9.0,
         Err(Error::Tolerance { .. }) => 10.0,
