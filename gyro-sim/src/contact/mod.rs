@@ -35,7 +35,7 @@
 //!     }
 //! }
 //!
-//! # fn main() -> Result<(), gyro_sim::Error> {
+//! # fn main() -> Result<(), gyro_sim::contact::Error> {
 //! let floor = Contact::new(0, 1).with_stops([0.0, f64::INFINITY], 0.5).unwrap();
 //! let start = [1.0, 0.0];
 //! let mut ball = Hybrid::new(Ball, [floor], Dop853::new(&start), 0.0, &start);
