@@ -1,5 +1,5 @@
 //! Exports random mechanisms, reads their C back and has a compiler look at it with warnings as errors:
-//! `cargo run -p gyro-c-tests --example pages -- [COUNT [FIRST_SEED]]`
+//! `cargo run -p gyro-c-tests --example random_mechanisms -- [COUNT [FIRST_SEED]]`
 #![expect(clippy::print_stdout, reason = "it is a program")]
 
 use gyro_export::Precision;
