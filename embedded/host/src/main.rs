@@ -15,7 +15,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn print<T: Bits>() -> Result<(), gyro_sim::Error> {
+fn print<T: Bits>() -> Result<(), gyro_sim::contact::Error> {
     for (name, run) in runs::<T>() {
         show(name, run()?);
     }
