@@ -48,17 +48,23 @@ pub fn rows(
     rows.sort_unstable();
     let phi: Vec<_> = rows.iter().map(|&row| phi[row]).collect();
     let phi = system.expanded(&angles.poses, &phi);
-    let phi = system.expanded(&all_held(layout), &phi);
+    let held = all_held(system, layout);
+    let phi = system.expanded(&held, &phi);
     let phi = normal_form(&mut system.graph, unit, &phi);
     let graph = &mut system.graph;
     rows.into_iter().zip(phi).filter(|&(_, row)| !vanishes(graph, unit, row)).collect()
 }
 
-/// The values of all coordinates that loops hold.
-pub fn all_held(layout: &Layout) -> Values {
+/// The values of all coordinates that loops hold; angles that x counts stay symbols.
+pub fn all_held(system: &mut System, layout: &Layout) -> Values {
     let scalars = layout.links.iter().flat_map(|link| &link.scalars);
     let held = scalars.filter(|scalar| layout.is_held(scalar.place.x));
-    held.flat_map(|scalar| held_at_zero(scalar.place)).collect()
+    let mut values: Values = held.flat_map(|scalar| held_at_zero(scalar.place)).collect();
+    for &(on, _) in &layout.turns {
+        let angle = Symbol::Angle(system.turn_of(on));
+        values.insert(angle, system.graph.symbol(angle));
+    }
+    values
 }
 
 /// The place of the scalar coordinate that a row alone determines, which is zero.
@@ -166,7 +172,8 @@ impl Closure {
             let direction = directions.of_rate(&mut system.graph, rate);
             let mut derivative = Derivative::new(&definitions, direction);
             let column: Vec<_> = rows.iter().map(|&row| derivative.of(&mut system.graph, row)).collect();
-            let column = system.expanded(&all_held(layout), &column);
+            let held = all_held(system, layout);
+            let column = system.expanded(&held, &column);
             self.by_determined.iter_mut().zip(column).for_each(|(row, entry)| row.push(entry));
         }
         self

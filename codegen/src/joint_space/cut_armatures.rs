@@ -54,7 +54,8 @@ impl CutArmature {
             values.extend((0..3).map(|k| (Symbol::Spin { moving_body, k }, spin[k])));
         }
         let rate = system.expanded(&values, &[rate]);
-        let rate = system.expanded(&all_held(layout), &rate)[0];
+        let held = all_held(system, layout);
+        let rate = system.expanded(&held, &rate)[0];
         let graph = &mut system.graph;
         let by_rate = |rate_of_state: usize| {
             let unit = directions.embedding.rates.iter().enumerate().filter_map(|(u, motion)| {
