@@ -111,7 +111,8 @@ impl Dynamics {
         let mut angles = vec![0.0; before(joints.len())];
         let mut at = 0;
         for place in self.mechanism.joint_layout().places {
-            if let JointPlace::Scalar { joint, coordinate } | JointPlace::Turn { joint, coordinate } = *place {
+            if let JointPlace::Scalar { joint, coordinate } | JointPlace::Turn { joint, coordinate } = *place
+            {
                 angles[before(joint.into()) + usize::from(coordinate)] = state[at];
             }
             at += place.n_coordinates();

@@ -161,7 +161,9 @@ fn joint_element<M: Mechanism>(mechanism: &M, layout: &JointLayout<'_>, index: u
     let rates = places.flat_map(|place| repeat_n((place, "rate"), place.n_rates()));
     match positions.chain(rates).nth(index) {
         Some((
-            JointPlace::Scalar { joint, .. } | JointPlace::Orientation { joint } | JointPlace::Turn { joint, .. },
+            JointPlace::Scalar { joint, .. }
+            | JointPlace::Orientation { joint }
+            | JointPlace::Turn { joint, .. },
             what,
         )) => {
             format!("the {what} of {}", name(mechanism, Owner::Joint(*joint)))

@@ -59,7 +59,8 @@ impl Layout {
             Attachment::Joint { joint, .. } => (0, joint),
             Attachment::Free | Attachment::Constrained => (1, link.body),
         });
-        let mut layout = Self { links: Vec::new(), n_coordinates: 0, n_rates: 0, determined, turns: Vec::new() };
+        let mut layout =
+            Self { links: Vec::new(), n_coordinates: 0, n_rates: 0, determined, turns: Vec::new() };
         for link in links {
             let coordinates = layout.place(system, link);
             layout.links.push(coordinates);

@@ -348,12 +348,7 @@ pub fn turn_rates(system: &mut System, layout: &Layout, in_joints: &Values) -> V
 }
 
 /// The turn references of joints that close loops but those that x has.
-fn turns_of_loops(
-    system: &mut System,
-    layout: &Layout,
-    angles: &WholeAngles,
-    determined: &Values,
-) -> Values {
+fn turns_of_loops(system: &mut System, layout: &Layout, angles: &WholeAngles, determined: &Values) -> Values {
     let mut turns: Vec<_> = system.model.turn_references().into_iter().enumerate().collect();
     turns.retain(|(_, on)| layout.turns.iter().all(|(counted, _)| counted != on));
     let turns = turns.into_iter();

@@ -117,8 +117,14 @@ impl ForwardDynamics {
             let excitation =
                 Excitation { forced, ..Excitation::none(tree.n_moving_bodies(), tree.joints.len()) };
             let free = tree.respond(graph, &excitation).motions;
-            let (motions, _) =
-                loop_closure::close(graph, kinematics, tree, (&self.loop_rows, &changes), &self.cut_rotors, free);
+            let (motions, _) = loop_closure::close(
+                graph,
+                kinematics,
+                tree,
+                (&self.loop_rows, &changes),
+                &self.cut_rotors,
+                free,
+            );
             listed(&motions)
         });
         let mut projected: Vec<_> = projected.collect();

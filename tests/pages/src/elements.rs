@@ -27,7 +27,8 @@ impl Page {
     /// is cut, something holds it. Other dice than those of the rest decide on it.
     pub fn hold_all(&mut self) {
         for (index, (joint, coordinate)) in self.coordinates().into_iter().enumerate() {
-            let (stiffness, free) = (self.rotors.pick(&["0.3", "2", "7.5"]), self.rotors.pick(&["0", "-0.4", "1.1"]));
+            let (stiffness, free) =
+                (self.rotors.pick(&["0.3", "2", "7.5"]), self.rotors.pick(&["0", "-0.4", "1.1"]));
             self.elements += &format!(
                 "\n[[force]]\nname = \"h{index}\"\nkind = \"spring\"\njoint = \"j{joint}\"\ncoordinate = \
                  {coordinate:?}\nstiffness = {stiffness}\nfree = {free}\n"
