@@ -187,14 +187,14 @@ impl Run {
         let (mut x, mut u) = (Vec::new(), Vec::new());
         for place in places {
             match *place {
-                JointPlace::Scalar { joint, coordinate } => {
+                JointPlace::Scalar { joint, coordinate } | JointPlace::Turn { joint, coordinate } => {
                     let own = |(_, shown): &(usize, &Shown)| {
                         shown.joint == usize::from(joint) && !shown.is_orientation()
                     };
                     let (at, _) = shown.iter().enumerate().filter(own).nth(coordinate.into())?;
                     let (position, rate) = columns::scalar(&sample.coordinates[at]);
                     x.push(position);
-                    u.push(rate);
+                    u.extend((place.n_rates() == 1).then_some(rate));
                 }
                 JointPlace::Orientation { joint } => {
                     let own = |shown: &Shown| shown.joint == usize::from(joint) && shown.is_orientation();

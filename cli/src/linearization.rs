@@ -22,7 +22,7 @@ fn name(model: &Model, element: &Element) -> String {
         Element::Rate { place, component } => (place, component, "_rate"),
     };
     match place {
-        JointPlace::Scalar { joint, coordinate } => {
+        JointPlace::Scalar { joint, coordinate } | JointPlace::Turn { joint, coordinate } => {
             let joint = usize::from(joint);
             let shown = columns::coordinates(model).into_iter();
             let mut own = shown.filter(|shown| shown.joint == joint && !shown.is_orientation());

@@ -10,7 +10,7 @@ use crate::joint_space::JointSpace;
 use crate::kernels::{Kernel, Kernels};
 use crate::repeat::{self, Local, Repetition};
 use crate::tape;
-use gyro_model::{Attachment, Model, Spline, Start};
+use gyro_model::{Attachment, JointCoordinate, Model, Spline, Start};
 use std::collections::BTreeMap;
 
 /// A number that a kernel reads.
@@ -85,6 +85,7 @@ pub enum JointPlace {
     Scalar { joint: usize, coordinate: usize },
     Orientation { joint: usize },
     Body { body: usize },
+    Turn { joint: usize, coordinate: usize },
 }
 
 /// What there is in joint coordinates.
@@ -258,6 +259,9 @@ pub fn places(model: &Model, space: &JointSpace) -> Vec<JointPlace> {
             }
         };
         places.push(place);
+    }
+    for &(JointCoordinate { joint, coordinate }, x) in &space.layout.turns {
+        places.push((x, JointPlace::Turn { joint, coordinate }));
     }
     places.sort_by_key(|(x, _)| *x);
     places.into_iter().map(|(_, place)| place).collect()

@@ -34,6 +34,7 @@ pub(crate) enum Place {
     Scalar { joint: usize, coordinate: usize },
     Orientation,
     Body,
+    Turn { joint: usize, coordinate: usize },
 }
 
 impl Module {
@@ -130,8 +131,11 @@ impl Module {
                     found.map_or(Ok(0), |field| whole(&field.expr))
                 };
                 let place = match name.as_deref() {
-                    Some("Scalar") => field("joint").and_then(|joint| {
-                        field("coordinate").map(|coordinate| Place::Scalar { joint, coordinate })
+                    Some(kind @ ("Scalar" | "Turn")) => field("joint").and_then(|joint| {
+                        field("coordinate").map(|coordinate| match kind {
+                            "Turn" => Place::Turn { joint, coordinate },
+                            _ => Place::Scalar { joint, coordinate },
+                        })
                     }),
                     Some("Orientation") => Ok(Place::Orientation),
                     Some("Body") => Ok(Place::Body),

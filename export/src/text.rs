@@ -327,6 +327,7 @@ impl Writer<'_> {
             }
             Place::Orientation => "GYRO_PLACE_ORIENTATION",
             Place::Body => "GYRO_PLACE_BODY",
+            Place::Turn { .. } => "GYRO_PLACE_ANGLE",
         });
         places.collect::<Vec<_>>().join(", ")
     }

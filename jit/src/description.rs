@@ -58,6 +58,9 @@ impl OwnedLayout {
             gyro_codegen::JointPlace::Orientation { joint } => {
                 JointPlace::Orientation { joint: narrow(joint) }
             }
+            gyro_codegen::JointPlace::Turn { joint, coordinate } => {
+                JointPlace::Turn { joint: narrow(joint), coordinate: narrow(coordinate) }
+            }
             gyro_codegen::JointPlace::Body { body } => JointPlace::Body { body: narrow(body) },
         };
         let places = Places {

@@ -111,7 +111,8 @@ impl Dynamics {
         let mut angles = vec![0.0; before(joints.len())];
         let mut at = 0;
         for place in self.mechanism.joint_layout().places {
-            if let JointPlace::Scalar { joint, coordinate } = *place {
+            if let JointPlace::Scalar { joint, coordinate } | JointPlace::Turn { joint, coordinate } = *place
+            {
                 angles[before(joint.into()) + usize::from(coordinate)] = state[at];
             }
             at += place.n_coordinates();
@@ -130,10 +131,12 @@ pub(crate) fn names(mechanism: &Compiled<f64>, model: &Model) -> (Vec<String>, V
     const AXES: [&str; 3] = ["x", "y", "z"];
     for place in mechanism.joint_layout().places {
         match *place {
-            JointPlace::Scalar { joint, coordinate } => {
+            JointPlace::Scalar { joint, coordinate } | JointPlace::Turn { joint, coordinate } => {
                 let mut own = shown.iter().filter(|s| s.joint == usize::from(joint) && !s.is_orientation());
                 let name = own.nth(coordinate.into()).map_or(String::new(), |shown| shown.name.clone());
-                u.push(format!("{name} rate"));
+                if place.n_rates() == 1 {
+                    u.push(format!("{name} rate"));
+                }
                 x.push(name);
             }
             JointPlace::Orientation { joint } => {

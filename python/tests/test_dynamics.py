@@ -106,10 +106,10 @@ def test_free_bodies_have_states():
 def test_mechanisms_without_joint_coordinates_say_so():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", gyro.RunWarning)
-        # A loop of which no joint can be cut, as springs act on all.
+        # A loop of which no joint can be cut, as friction sticks in all.
         text = (MODELS / "four-bar-revolute.toml").read_text()
         for joint in ("crank_pivot", "elbow", "knee", "rocker_pivot"):
-            text += f'[[force]]\nname = "at_{joint}"\nkind = "spring"\njoint = "{joint}"\nstiffness = 1\n'
+            text += f'[[contact]]\nname = "at_{joint}"\njoint = "{joint}"\nfriction = 0.1\n'
         linkage = gyro.loads(text)
         assert linkage.lacks_joint_coordinates
         with pytest.raises(gyro.RequestError, match="in maximal ones"):

@@ -160,7 +160,12 @@ fn joint_element<M: Mechanism>(mechanism: &M, layout: &JointLayout<'_>, index: u
     let positions = places.clone().flat_map(|place| repeat_n((place, "position"), place.n_coordinates()));
     let rates = places.flat_map(|place| repeat_n((place, "rate"), place.n_rates()));
     match positions.chain(rates).nth(index) {
-        Some((JointPlace::Scalar { joint, .. } | JointPlace::Orientation { joint }, what)) => {
+        Some((
+            JointPlace::Scalar { joint, .. }
+            | JointPlace::Orientation { joint }
+            | JointPlace::Turn { joint, .. },
+            what,
+        )) => {
             format!("the {what} of {}", name(mechanism, Owner::Joint(*joint)))
         }
         Some((JointPlace::Body { body }, what)) => {

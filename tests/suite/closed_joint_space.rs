@@ -76,7 +76,7 @@ impl<'m, M: JointSpace<Scalar = f64>> Walk<'m, M> {
             own.iter_mut().for_each(|x| *x += STRIDE * scale * self.random.signed());
             rates.iter_mut().for_each(|u| *u = RATE * scale * self.random.signed());
             let orientation = match place {
-                JointPlace::Scalar { .. } => continue,
+                JointPlace::Scalar { .. } | JointPlace::Turn { .. } => continue,
                 JointPlace::Orientation { .. } => own,
                 JointPlace::Body { .. } => &mut own[3..],
             };
@@ -209,9 +209,10 @@ macro_rules! checked {
     };
 }
 
-const CHECKED: [Check; 26] = checked![
+const CHECKED: [Check; 30] = checked![
     "all-joints"
     "armature"
+    "armatures-in-loop"
     "cam"
     "carried-four-bar"
     "differential"
@@ -225,7 +226,9 @@ const CHECKED: [Check; 26] = checked![
     "friction-in-loops"
     "gear"
     "gear-pair"
+    "geared-loop"
     "gyroscope-four-bar"
+    "held-spatial-loop"
     "manipulator"
     "parallelogram"
     "peaucellier"
@@ -234,6 +237,7 @@ const CHECKED: [Check; 26] = checked![
     "rod"
     "slider-crank"
     "spatial-slider-crank"
+    "springs-in-loop"
     "stewart-platform"
     "two-four-bars"
 ];

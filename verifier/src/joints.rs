@@ -44,6 +44,8 @@ pub enum Freedom {
         /// Its place in [`Model::coordinate_bodies`].
         moving_body: usize,
     },
+    /// The turn reference of an angle, which is none of the coordinates.
+    Turn(JointCoordinate),
 }
 
 impl Freedom {
@@ -52,6 +54,7 @@ impl Freedom {
         let kind = |joint: usize| model.joints.get(joint).map(|joint| joint.kind);
         match self {
             Self::Scalar(on) => kind(on.joint).is_some_and(|kind| on.coordinate < kind.coordinates().len()),
+            Self::Turn(on) => model.turn_references().contains(&on),
             Self::Orientation { joint } => {
                 matches!(kind(joint), Some(JointKind::Spherical | JointKind::PointOnLine))
             }
@@ -63,6 +66,7 @@ impl Freedom {
     pub fn sizes(self) -> (usize, usize) {
         match self {
             Self::Scalar(_) => (1, 1),
+            Self::Turn(_) => (1, 0),
             Self::Orientation { .. } => (4, 3),
             Self::Body { .. } => (7, 6),
         }
@@ -71,7 +75,7 @@ impl Freedom {
     /// Where among its coordinates Euler parameters start, if there are any.
     pub fn euler(self) -> Option<usize> {
         match self {
-            Self::Scalar(_) => None,
+            Self::Scalar(_) | Self::Turn(_) => None,
             Self::Orientation { .. } => Some(0),
             Self::Body { .. } => Some(3),
         }
@@ -92,7 +96,11 @@ impl JointLayout {
             if !freedom.exists(model) {
                 return Err(format!("{freedom:?} is no coordinate of the model"));
             }
-            if layout.places.iter().any(|place| place.of == *freedom) {
+            let (scalar, turn) = match *freedom {
+                Freedom::Scalar(on) | Freedom::Turn(on) => (Freedom::Scalar(on), Freedom::Turn(on)),
+                other => (other, other),
+            };
+            if layout.places.iter().any(|place| place.of == scalar || place.of == turn) {
                 return Err(format!("{freedom:?} is there twice"));
             }
             layout.add(*freedom);
@@ -129,6 +137,11 @@ impl JointLayout {
     /// Where Euler parameters start.
     pub fn euler(&self) -> impl Iterator<Item = usize> {
         self.places.iter().filter_map(|place| place.of.euler().map(|start| place.x + start))
+    }
+
+    /// Where a turn reference stands.
+    pub fn turn(&self, on: JointCoordinate) -> Option<usize> {
+        self.places.iter().find(|place| place.of == Freedom::Turn(on)).map(|place| place.x)
     }
 
     /// Where a scalar coordinate stands.

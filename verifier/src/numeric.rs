@@ -99,7 +99,7 @@ fn joint_start_differs(model: &Model, module: &Module) -> Option<String> {
     let largest = |numbers: &[f64]| numbers.iter().fold(1.0, |a: f64, b| a.max(b.abs()));
     let is_near = |a: f64, b: f64, scale: f64| (a - b).abs() <= START_TOLERANCE * scale;
     let turned = layout.places.iter().all(|place| match place.of {
-        Freedom::Scalar(on) => {
+        Freedom::Scalar(on) | Freedom::Turn(on) => {
             let expected = assembled.joints[on.joint].position[on.coordinate];
             is_near(module.joint_start[place.x], expected, largest(&[expected]))
         }

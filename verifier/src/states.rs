@@ -92,7 +92,7 @@ fn turned(layout: &JointLayout, start: &[f64], mut turn: impl FnMut() -> (f64, [
     for place in &layout.places {
         let (angle, half) = turn();
         match (place.of, place.of.euler()) {
-            (Freedom::Scalar(_), _) => joints[place.x] = angle,
+            (Freedom::Scalar(_) | Freedom::Turn(_), _) => joints[place.x] = angle,
             (_, Some(euler)) => joints[place.x + euler..][..4].copy_from_slice(&half),
             (_, None) => {}
         }

@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::nested::{self, Session};
 use crate::runs::Runs;
 use crate::{contacts, files, scene};
+use gyro_assembled::Recursive;
 use gyro_codegen::Functions;
 use gyro_model::Model;
 use gyro_runner::protocol::Request;
@@ -123,7 +124,7 @@ impl Lab {
         self.parameters = parameters;
     }
 
-    /// Whether the model is a tree whose generated code has joint coordinates.
+    /// Whether generated code of the model has joint coordinates.
     pub(crate) fn has_joint_coordinates(&self) -> bool {
         self.has_joint_coordinates
     }
@@ -138,7 +139,8 @@ impl Lab {
         if let Some(reference) = gyro_reference::scene(&self.name).filter(|_| is_alone) {
             return Ok(Truth::of_reference(&self.model, &reference, self.t_end));
         }
-        let engine = if self.has_joint_coordinates() { Engine::Recursive } else { Engine::Dense };
+        let is_tree = Recursive::<f64>::supports(&self.model).is_ok();
+        let engine = if is_tree { Engine::Recursive } else { Engine::Dense };
         let correction = Correction::Partition;
         let curve = Curve {
             engine,

@@ -238,16 +238,14 @@ fn what_has_no_joint_coordinates_is_said_and_a_tree_is_called_a_tree() {
     check("compound-pendulum.toml", "recursive", "leave out --engine recursive");
     check("compound-pendulum.toml", "assembled", "leave out --engine");
     check("four-bar.toml", "assembled", "leave out --engine");
-    // A spring in every joint: one of them closes the loop.
+    // Friction that sticks in every joint: one of them closes the loop.
     let mut linkage = fs::read_to_string(model("four-bar-revolute.toml")).unwrap();
     for joint in ["crank_pivot", "elbow", "knee", "rocker_pivot"] {
-        linkage += &format!(
-            "[[force]]\nname = \"on_{joint}\"\nkind = \"spring\"\njoint = \"{joint}\"\nstiffness = 1\n"
-        );
+        linkage += &format!("[[contact]]\nname = \"on_{joint}\"\njoint = \"{joint}\"\nfriction = 0.1\n");
     }
-    let path = folder.0.join("sprung.toml");
+    let path = folder.0.join("sticking.toml");
     fs::write(&path, linkage).unwrap();
     let output = simulate(&folder, &[path.to_str().unwrap(), "--coordinates", "joint"]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(!output.status.success() && said.contains("depends on the angle of joint `"), "{said}");
+    assert!(!output.status.success() && said.contains("has a contact on joint `"), "{said}");
 }

@@ -33,7 +33,8 @@ impl Rotor {
         joints.filter_map(|joint| Self::of(system, joint)).collect()
     }
 
-    fn of(system: &mut System, index: usize) -> Option<Self> {
+    /// That of one joint, if it has one.
+    pub fn of(system: &mut System, index: usize) -> Option<Self> {
         let description = &system.model.joints[index];
         if description.armature.is_zero() {
             return None;

@@ -43,6 +43,7 @@ pub struct System<'m> {
 }
 
 impl<'m> System<'m> {
+    #[cfg(test)]
     pub fn new(model: &'m Model) -> Self {
         Self::with_effort(model, Effort::Full)
     }

@@ -43,8 +43,9 @@ pub struct Candidates {
 
 impl Candidates {
     pub fn solve(system: &mut System, coordinates: &Coordinates) -> Self {
-        let Coordinates { embedding, links_of_dynamics: links, unit, along, armature, .. } = coordinates;
-        let (loads, along) = (&coordinates.loads, (along.as_slice(), armature.as_slice()));
+        let Coordinates { embedding, links_of_dynamics: links, unit, along, .. } = coordinates;
+        let armatures = coordinates.armatures(&mut system.graph);
+        let (loads, along) = (&coordinates.loads, (along.as_slice(), armatures.as_slice()));
         let rows = coordinates.remaining_rows(&mut system.graph);
         let spins = dynamics::spins(system, links);
         let balance = JointDynamics::new(system, links, &spins, loads, along, (embedding, rows.clone()));
@@ -61,7 +62,7 @@ impl Candidates {
         if let Some(tree) = AxisTree::new(system, coordinates, &coordinates.invariant) {
             if coordinates.closure.rows.is_empty() {
                 eliminated.extend(tree.forms(system));
-            } else if axis_loops::is_small(&tree, coordinates) {
+            } else if axis_loops::is_small(&tree, coordinates) && coordinates.cut_armatures.is_empty() {
                 eliminated
                     .push((axis_loops::WITH_ROWS, axis_loops::accelerations(system, &tree, coordinates)));
             }

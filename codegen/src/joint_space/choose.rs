@@ -111,7 +111,10 @@ impl JointSpace {
             solution = corrected.roots.iter().copied().chain(solved).collect();
         }
         let symbols: Vec<_> = (0..n_rates).map(|u| system.graph.symbol(Symbol::Rate(u))).collect();
-        let rates = maps::coordinate_rates(system, &coordinates.layout, &symbols);
+        let mut rates = maps::coordinate_rates(system, &coordinates.layout, &symbols);
+        for (x, rate) in maps::turn_rates(system, &coordinates.layout, &coordinates.in_joints) {
+            rates[x] = rate;
+        }
         let along = forces::power(system, &coordinates.layout, &coordinates.angles);
         let along = system.expanded(&coordinates.in_joints, &[along])[0];
         let power = Power { along, others: observed.power_but_along_coordinates, multipliers: &lambda };

@@ -5,6 +5,7 @@ use super::embedding::Embedding;
 use super::layout::{Layout, Place};
 use super::relation::Relation;
 use super::whole_angles::WholeAngles;
+use crate::derive::frames::sine_and_cosine;
 use crate::derive::system::System;
 use crate::expr::definitions::{Definitions, Expansion, Values};
 use crate::expr::differentiate::{Derivative, Direction};
@@ -34,29 +35,36 @@ pub struct Closure {
     pub by_determined: Vec<Vec<ExprId>>,
 }
 
-/// The rows of joints that close loops, those that vanish left out.
+/// The rows of joints that close loops and of the couplers and drivers `beside` them, those that vanish left out.
 pub fn rows(
     system: &mut System,
-    phi: &[ExprId],
+    (phi, beside): (&[ExprId], &[RowOwner]),
     (layout, angles): (&Layout, &WholeAngles),
     unit: &[Vec<ExprId>],
 ) -> Vec<(usize, ExprId)> {
-    let joints = system.tree.loop_joints.clone();
-    let rows: Vec<_> =
-        joints.into_iter().flat_map(|joint| system.model.rows_of(RowOwner::Joint(joint))).collect();
+    let owners = system.tree.loop_joints.iter().map(|&joint| RowOwner::Joint(joint));
+    let owners = owners.chain(beside.iter().copied());
+    let mut rows: Vec<_> = owners.flat_map(|owner| system.model.rows_of(owner)).collect();
+    rows.sort_unstable();
     let phi: Vec<_> = rows.iter().map(|&row| phi[row]).collect();
     let phi = system.expanded(&angles.poses, &phi);
-    let phi = system.expanded(&all_held(layout), &phi);
+    let held = all_held(system, layout);
+    let phi = system.expanded(&held, &phi);
     let phi = normal_form(&mut system.graph, unit, &phi);
     let graph = &mut system.graph;
     rows.into_iter().zip(phi).filter(|&(_, row)| !vanishes(graph, unit, row)).collect()
 }
 
-/// The values of all coordinates that loops hold.
-pub fn all_held(layout: &Layout) -> Values {
+/// The values of all coordinates that loops hold; angles that x counts stay symbols.
+pub fn all_held(system: &mut System, layout: &Layout) -> Values {
     let scalars = layout.links.iter().flat_map(|link| &link.scalars);
     let held = scalars.filter(|scalar| layout.is_held(scalar.place.x));
-    held.flat_map(|scalar| held_at_zero(scalar.place)).collect()
+    let mut values: Values = held.flat_map(|scalar| held_at_zero(scalar.place)).collect();
+    for &(on, _) in &layout.turns {
+        let angle = Symbol::Angle(system.turn_of(on));
+        values.insert(angle, system.graph.symbol(angle));
+    }
+    values
 }
 
 /// The place of the scalar coordinate that a row alone determines, which is zero.
@@ -101,12 +109,12 @@ impl Closure {
         unit: &[Vec<ExprId>],
     ) -> Self {
         let (rows, phi): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
-        if system.tree.loop_joints.is_empty() {
+        if rows.is_empty() {
             return Self::default();
         }
+        let definitions = counted_angles(system, layout, angles);
         let directions = Directions { layout, angles, embedding };
         let graph = &mut system.graph;
-        let definitions = Definitions::default();
         let mut jacobian = vec![Vec::new(); rows.len()];
         for rate in 0..layout.n_rates {
             let unit_rate = directions.of_rate(graph, rate);
@@ -159,23 +167,38 @@ impl Closure {
         self.by_determined = vec![Vec::new(); rows.len()];
         let every = Embedding::identity(layout.n_tree_rates());
         let directions = Directions { layout, angles, embedding: &every };
+        let definitions = counted_angles(system, layout, angles);
         for rate in layout.n_rates..layout.n_tree_rates() {
             let direction = directions.of_rate(&mut system.graph, rate);
-            let definitions = Definitions::default();
             let mut derivative = Derivative::new(&definitions, direction);
             let column: Vec<_> = rows.iter().map(|&row| derivative.of(&mut system.graph, row)).collect();
-            let column = system.expanded(&all_held(layout), &column);
+            let held = all_held(system, layout);
+            let column = system.expanded(&held, &column);
             self.by_determined.iter_mut().zip(column).for_each(|(row, entry)| row.push(entry));
         }
         self
     }
 }
 
+/// The angles of cut joints whose turns x counts, by their sines and cosines.
+fn counted_angles(system: &mut System, layout: &Layout, angles: &WholeAngles) -> Definitions {
+    let mut definitions = Definitions::default();
+    for &(on, _) in &layout.turns {
+        let (frames, kind) = (system.joints[on.joint], system.model.coordinate_kind(on));
+        let (sine, cosine) = sine_and_cosine(&mut system.graph, kind, &frames, &frames.relative);
+        let [sine, cosine] = [sine, cosine].map(|part| system.expanded(&angles.poses, &[part])[0]);
+        let turn = system.turn_of(on);
+        let angle = system.graph.symbol(Symbol::Angle(turn));
+        definitions.insert_angle(turn, angle, (sine, cosine));
+    }
+    definitions
+}
+
 /// Along which the rows are differentiated.
-struct Directions<'a> {
-    layout: &'a Layout,
-    angles: &'a WholeAngles,
-    embedding: &'a Embedding,
+pub struct Directions<'a> {
+    pub layout: &'a Layout,
+    pub angles: &'a WholeAngles,
+    pub embedding: &'a Embedding,
 }
 
 impl Directions<'_> {
@@ -192,7 +215,7 @@ impl Directions<'_> {
     }
 
     /// All rates as they are, and constant but for what time changes.
-    fn of_motion(&self, graph: &mut Graph) -> Direction {
+    pub fn of_motion(&self, graph: &mut Graph) -> Direction {
         let mut direction = self.along(graph, |graph, u| graph.symbol(Symbol::Rate(u)));
         direction.insert(Symbol::Time, Graph::ONE);
         let rates = &self.embedding.rates;

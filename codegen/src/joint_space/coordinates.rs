@@ -1,7 +1,8 @@
 //! Joint coordinates: what is derived before anything is solved.
 
 use super::closing_units;
-use super::closure::{self, Closure};
+use super::closure::{self, Closure, Directions};
+use super::cut_armatures::CutArmature;
 use super::determined;
 use super::embedding::Embedding;
 use super::layout::Layout;
@@ -17,6 +18,7 @@ use crate::expr::definitions::Values;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::ZERO3;
+use crate::solve::gram_schmidt::Armature;
 use gyro_model::{JointCoordinate, Model, RowOwner, Tree};
 
 /// Joint coordinates and how they go with the maximal ones.
@@ -51,6 +53,8 @@ pub struct Coordinates {
     pub along: Vec<ExprId>,
     /// The armature along each rate of the tree.
     pub armature: Vec<ExprId>,
+    /// The armatures of joints that close loops.
+    pub cut_armatures: Vec<CutArmature>,
     /// What else acts on each body of the model.
     pub loads: Vec<Load>,
     /// Sets of atoms of which the squares sum to one.
@@ -59,14 +63,15 @@ pub struct Coordinates {
 
 impl Coordinates {
     pub fn derive(system: &mut System, textbook: &Textbook) -> Self {
-        let (mut known, _) = coordinates_beside_joints(system.model, &system.tree);
+        let (mut known, beside) = coordinates_beside_joints(system.model, &system.tree);
+        let turns = turns_to_count(system, &known);
         loop {
-            let layout = Layout::of(system, known.clone());
+            let layout = Layout::of(system, known.clone(), &turns);
             let determined = determined::values(system, &layout);
             let links = links_of(system, &layout, &|_| true);
             let angles = WholeAngles::of(system, &layout, &links, |x| layout.is_held(x));
             let unit = unit_atoms(system, &layout, &angles);
-            let rows = closure::rows(system, &textbook.kinematics.phi, (&layout, &angles), &unit);
+            let rows = closure::rows(system, (&textbook.kinematics.phi, &beside), (&layout, &angles), &unit);
             let held = rows.iter().find_map(|&(row, phi)| {
                 let place = closure::held_by(&mut system.graph, &layout, phi)?;
                 let scalar = layout.scalars().find(|scalar| scalar.place == place)?;
@@ -105,6 +110,11 @@ impl Coordinates {
             let taken = system.graph.mul(inertia, motion.bias);
             *along = system.graph.sub(*along, taken);
         }
+        let directions = Directions { layout: &layout, angles: &angles, embedding: &by_rates };
+        let cut_armatures = CutArmature::all(system, &directions, &links);
+        for cut in &cut_armatures {
+            cut.hold_back(&mut system.graph, &embedding, &mut along);
+        }
         Self {
             layout,
             links,
@@ -121,9 +131,17 @@ impl Coordinates {
             embedding,
             along,
             armature,
+            cut_armatures,
             loads,
             unit,
         }
+    }
+
+    /// What resists the unknowns besides the inertia of bodies.
+    pub fn armatures(&self, graph: &mut Graph) -> Vec<Armature> {
+        let mut all = self.embedding.armatures(&self.armature);
+        all.extend(self.cut_armatures.iter().map(|cut| cut.by_unknowns(graph, &self.embedding)));
+        all
     }
 
     /// Φ of the joints that close loops; x, one Newton step nearer to closed loops; u that keep loops closed.
@@ -149,13 +167,19 @@ impl Coordinates {
         let missing = opposite(graph, &closure.residual);
         let changes = least(graph, &missing);
         let shifts = maps::coordinate_rates(system, layout, &shifts);
+        let turned: Vec<_> = layout
+            .turns
+            .iter()
+            .map(|&(on, x)| (x, system.graph.symbol(Symbol::Angle(system.turn_of(on)))))
+            .collect();
         let graph = &mut system.graph;
         let added = |graph: &mut Graph, symbol: Symbol, change: ExprId| {
             let known = graph.symbol(symbol);
             graph.add(known, change)
         };
-        let x: Vec<_> =
+        let mut x: Vec<_> =
             shifts.into_iter().enumerate().map(|(k, by)| added(graph, Symbol::Coordinate(k), by)).collect();
+        turned.into_iter().for_each(|(place, angle)| x[place] = angle);
         let u: Vec<_> =
             changes.into_iter().enumerate().map(|(k, by)| added(graph, Symbol::Rate(k), by)).collect();
         [&closure.phi, &distances, &x, &u].map(|roots| system.expanded(&self.in_joints, roots))
@@ -199,39 +223,27 @@ impl Coordinates {
 /// atoms of which the squares sum to one, rows.
 type Derived = (Layout, Values, Vec<LinkKinematics>, WholeAngles, Vec<Vec<ExprId>>, Vec<(usize, ExprId)>);
 
-/// Why joint coordinates do not describe a mechanism, in words that follow "it has"; `None` if they do. Couplers and
-/// drivers must determine coordinates of the tree. Of a joint that closes a loop the angle must be one of the tree's
-/// if something depends on it: else its whole turns are not known, or, of a sum of angles, not proved.
+/// Why joint coordinates do not describe a mechanism, in words that follow "it has"; `None` if they do.
 pub fn obstacle(model: &Model) -> Option<String> {
     let tree = Tree::of_coordinates(model);
-    match coordinates_beside_joints(model, &tree).1.first() {
-        Some(RowOwner::Driver(driver)) => Some(format!(
-            "the driver `{}` of a coordinate that is determined already",
-            model.drivers[*driver].name
-        )),
-        Some(RowOwner::Coupler(coupler)) => Some(format!(
-            "the coupler `{}` of coordinates that are determined already",
-            model.couplers[*coupler].name
-        )),
-        _ => unknown_angle(model, &tree).map(|on| {
-            let name = &model.joints[on.joint].name;
-            format!("something that depends on the angle of joint `{name}`, which closes a loop")
-        }),
-    }
+    let cut = model.contacts.iter().find(|contact| tree.loop_joints.contains(&contact.on.joint))?;
+    let name = &model.joints[cut.on.joint].name;
+    Some(format!("a contact on joint `{name}`, which closes a loop"))
 }
 
-/// An angle of a joint that closes a loop, if something depends on it and it is not known.
-fn unknown_angle(model: &Model, tree: &Tree) -> Option<JointCoordinate> {
-    let mut turns = model.turn_references();
-    turns.retain(|turn| tree.loop_joints.contains(&turn.joint));
+/// The angles of cut joints whose whole turns the state counts: those on which something depends and which are no
+/// angle of the tree. (A sum of angles may be off by a whole turn.)
+fn turns_to_count(system: &mut System, known: &[Determined]) -> Vec<JointCoordinate> {
+    let mut turns = system.model.turn_references();
+    turns.retain(|turn| system.tree.loop_joints.contains(&turn.joint));
     if turns.is_empty() {
-        return None;
+        return turns;
     }
-    let mut system = System::new(model);
-    let layout = Layout::of(&system, coordinates_beside_joints(model, tree).0);
-    let links = links_of(&mut system, &layout, &|_| true);
-    let angles = WholeAngles::of(&mut system, &layout, &links, |_| false);
-    turns.into_iter().find(|&turn| angles.of_loop(turn).is_none_or(|sum| sum.parts().len() > 1))
+    let layout = Layout::of(system, known.to_vec(), &[]);
+    let links = links_of(system, &layout, &|_| true);
+    let angles = WholeAngles::of(system, &layout, &links, |_| false);
+    turns.retain(|&turn| angles.of_loop(turn).is_none_or(|sum| sum.parts().len() > 1));
+    turns
 }
 
 /// What couplers and drivers determine, and the owners of the rows that determine no coordinate of the tree.

@@ -51,13 +51,13 @@ pub struct JointDynamics {
 
 impl JointDynamics {
     /// `loads` act on each body of the model besides gravity; `along` is the force along each rate of the tree,
-    /// `armature` the inertia that turns with it.
+    /// `armatures` are the inertias that the unknowns turn.
     pub fn new(
         system: &mut System,
         links: &[LinkKinematics],
         spins: &[Vec3],
         loads: &[Load],
-        (along, armature): (&[ExprId], &[ExprId]),
+        (along, armatures): (&[ExprId], &[Armature]),
         (embedding, rows): (&Embedding, Vec<(Vec<ExprId>, ExprId)>),
     ) -> Self {
         let gravity = system.numbers(&system.model.gravity);
@@ -96,7 +96,7 @@ impl JointDynamics {
         excitation.bias = (0..spins.len())
             .map(|moving_body| inertial(system, moving_body, &spins[moving_body], loads))
             .collect();
-        let armatures = embedding.armatures(armature);
+        let armatures = armatures.to_vec();
         Self { unknowns, places, subspaces, excitation, embedding: embedding.clone(), armatures, rows }
     }
 

@@ -67,7 +67,11 @@ impl Jacobian {
         let (mut of_state, mut of_inputs) = (Vec::new(), Vec::new());
         let n = layout.n_coordinates + layout.n_rates;
         for (name, of_rates) in candidates {
-            let rows = rows(graph, &of_rates);
+            let mut rows = rows(graph, &of_rates);
+            // Whole turns choose a branch of an angle: nothing changes with them.
+            for row in &mut rows {
+                layout.turns.iter().for_each(|&(_, x)| row[x] = Graph::ZERO);
+            }
             // Nothing depends on the work that has been done.
             let work = rows.len() - n;
             let zeros = vec![Graph::ZERO; work];

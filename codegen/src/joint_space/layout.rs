@@ -18,6 +18,9 @@ pub struct Layout {
     pub n_rates: usize,
     /// The coordinates that are no part of the state, in the order of their places.
     pub determined: Vec<Determined>,
+    /// The angles of cut joints whose whole turns x counts, with their places in x behind all others. They have no
+    /// rates in u.
+    pub turns: Vec<(JointCoordinate, usize)>,
 }
 
 /// The coordinates of one link, in this order.
@@ -49,17 +52,20 @@ pub struct Place {
 }
 
 impl Layout {
-    pub fn of(system: &System, determined: Vec<Determined>) -> Self {
+    /// `turns` are the angles of cut joints whose whole turns the state counts.
+    pub fn of(system: &System, determined: Vec<Determined>, turns: &[JointCoordinate]) -> Self {
         let mut links = system.tree.links.clone();
         links.sort_by_key(|link| match link.attachment {
             Attachment::Joint { joint, .. } => (0, joint),
             Attachment::Free | Attachment::Constrained => (1, link.body),
         });
-        let mut layout = Self { links: Vec::new(), n_coordinates: 0, n_rates: 0, determined };
+        let mut layout =
+            Self { links: Vec::new(), n_coordinates: 0, n_rates: 0, determined, turns: Vec::new() };
         for link in links {
             let coordinates = layout.place(system, link);
             layout.links.push(coordinates);
         }
+        layout.turns = turns.iter().map(|&turn| (turn, layout.take(1, 0).x)).collect();
         let behind = |place: usize| Place { x: layout.n_coordinates + place, u: layout.n_rates + place };
         for scalar in layout.links.iter_mut().flat_map(|link| &mut link.scalars) {
             let place = layout.determined.iter().position(|known| known.coordinate == scalar.coordinate);

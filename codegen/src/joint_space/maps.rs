@@ -245,6 +245,9 @@ pub fn of_joints(system: &mut System, layout: &Layout, angles: &WholeAngles) -> 
             values.extend(held_at_zero(scalar.place));
         }
     }
+    for (symbol, reference) in references(system, layout) {
+        values.insert(reference, system.graph.symbol(symbol));
+    }
     let known = values.clone();
     insert_sums(&mut system.graph, angles, &mut values, |_, place| known[&Symbol::Rate(place.u)]);
     expanded(system, Values::default(), values)
@@ -316,20 +319,39 @@ pub fn in_joints(
             values.insert(Symbol::Angle(turn), x);
         }
     }
-    values.extend(turns_of_loops(system, angles, determined));
+    values.extend(turns_of_loops(system, layout, angles, determined));
     let rate = |graph: &mut Graph, place: Place| {
         let symbol = Symbol::Rate(place.u);
         determined.get(&symbol).copied().unwrap_or_else(|| graph.symbol(symbol))
     };
     insert_sums(&mut system.graph, angles, &mut values, rate);
+    for (symbol, x) in references(system, layout) {
+        values.insert(symbol, system.graph.symbol(x));
+    }
     let maximal = expanded(system, values.clone(), maximal.clone());
     values.extend(maximal);
     values
 }
 
-/// The turn references of joints that close loops.
-fn turns_of_loops(system: &mut System, angles: &WholeAngles, determined: &Values) -> Values {
-    let turns = system.model.turn_references().into_iter().enumerate();
+/// The turn references that x has, with their places there.
+fn references(system: &System, layout: &Layout) -> Vec<(Symbol, Symbol)> {
+    let turns = layout.turns.iter();
+    turns.map(|&(on, x)| (Symbol::Turn(system.turn_of(on)), Symbol::Coordinate(x))).collect()
+}
+
+/// How fast the angles change whose turns x counts, with their places there.
+pub fn turn_rates(system: &mut System, layout: &Layout, in_joints: &Values) -> Vec<(usize, ExprId)> {
+    let (turns, places): (Vec<_>, Vec<_>) = layout.turns.iter().copied().unzip();
+    let rates: Vec<_> = turns.into_iter().map(|on| joint_coordinate::rate(system, on)).collect();
+    let rates = system.expanded(in_joints, &rates);
+    places.into_iter().zip(rates).collect()
+}
+
+/// The turn references of joints that close loops but those that x has.
+fn turns_of_loops(system: &mut System, layout: &Layout, angles: &WholeAngles, determined: &Values) -> Values {
+    let mut turns: Vec<_> = system.model.turn_references().into_iter().enumerate().collect();
+    turns.retain(|(_, on)| layout.turns.iter().all(|(counted, _)| counted != on));
+    let turns = turns.into_iter();
     let sums: Vec<_> = turns.filter_map(|(turn, on)| Some((turn, angles.of_loop(on)?))).collect();
     let coordinate = |graph: &mut Graph, place: Place| {
         let symbol = Symbol::Coordinate(place.x);
@@ -387,7 +409,8 @@ pub fn state(system: &System, values: &Values, in_joints: &Values) -> Vec<ExprId
         moving_bodies.clone().flat_map(|moving_body| (0..7).map(move |k| position(moving_body, k)));
     let velocities = moving_bodies.flat_map(|moving_body| (0..6).map(move |k| velocity(moving_body, k)));
     let state = positions.chain(velocities).map(|symbol| values[&symbol]);
-    let turns = (0..system.model.turn_references().len()).map(|turn| in_joints[&Symbol::Angle(turn)]);
+    let turn = |turn| in_joints.get(&Symbol::Angle(turn)).unwrap_or_else(|| &in_joints[&Symbol::Turn(turn)]);
+    let turns = (0..system.model.turn_references().len()).map(|of| *turn(of));
     state.chain(turns).collect()
 }
 
@@ -395,7 +418,8 @@ pub fn state(system: &System, values: &Values, in_joints: &Values) -> Vec<ExprId
 pub fn joint_start(system: &System, layout: &Layout, reduced: &[ExprId], start: &Start) -> Vec<f64> {
     let scalar_at = |x: usize| {
         let mut scalars = layout.links.iter().flat_map(|link| &link.scalars);
-        scalars.find(|scalar| scalar.place.x == x).map(|scalar| scalar.coordinate)
+        let scalar = scalars.find(|scalar| scalar.place.x == x).map(|scalar| scalar.coordinate);
+        scalar.or_else(|| layout.turns.iter().find(|(_, place)| *place == x).map(|(turn, _)| *turn))
     };
     let assembled = |on: JointCoordinate| start.joints[on.joint].position[on.coordinate];
     let value = |symbol: Symbol| match symbol {

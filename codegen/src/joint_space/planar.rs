@@ -53,7 +53,8 @@ pub fn accelerations(system: &mut System, coordinates: &Coordinates) -> Option<V
         let load = coordinates.loads[*body];
         load.force == ZERO3 && load.torque == ZERO3
     };
-    let has_armature = coordinates.armature.iter().any(|&inertia| inertia != Graph::ZERO);
+    let has_armature = coordinates.armature.iter().any(|&inertia| inertia != Graph::ZERO)
+        || !coordinates.cut_armatures.is_empty();
     if coordinates.closure.rows.is_empty() || has_armature || !system.moving_bodies.iter().all(is_unloaded) {
         return None;
     }

@@ -150,6 +150,15 @@ impl WholeAngles {
             (attitudes[moving_body], held[moving_body]) = (Some(own), (kinematics.on_body, place));
         }
         angles.close_loops(system, &attitudes);
+        for (turn, on) in system.model.turn_references().into_iter().enumerate() {
+            let angle = Symbol::Angle(turn);
+            let counted = layout.turns.iter().any(|(counted, _)| *counted == on);
+            // An angle that x counts is differentiated as one.
+            let known = layout.scalar(on).map(|scalar| Symbol::Coordinate(scalar.place.x));
+            if let Some(symbol) = known.or(counted.then_some(angle)) {
+                angles.poses.insert(angle, system.graph.symbol(symbol));
+            }
+        }
         let places: Vec<_> = attitudes
             .into_iter()
             .zip(held)

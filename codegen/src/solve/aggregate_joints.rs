@@ -202,10 +202,10 @@ impl Step {
         let others = couplings.others(unknown);
         for &(other, coupling) in &others {
             let share = graph.mul(coupling, inverse);
-            if let Some(whole) = waiting.get_mut(&other) {
-                let taken = wrench.scaled(graph, share).negated(graph);
-                *whole = whole.plus(graph, &taken);
-            }
+            // An unknown that is coupled by an armature alone may not have been met yet.
+            let whole = waiting.entry(other).or_insert(SpatialVector::ZERO);
+            let taken = wrench.scaled(graph, share).negated(graph);
+            *whole = whole.plus(graph, &taken);
             for &(another, factor) in others.iter().filter(|(another, _)| *another <= other) {
                 let taken = graph.mul(share, factor);
                 let taken = graph.neg(taken);

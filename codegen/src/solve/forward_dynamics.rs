@@ -14,7 +14,7 @@ use crate::solve::Solution;
 use crate::solve::articulated_body::{Basis, EliminatedTree, Excitation};
 use crate::solve::cancellation::{self, Trials};
 use crate::solve::gram_schmidt::{self, GramSchmidtTree};
-use crate::solve::loop_closure;
+use crate::solve::loop_closure::{self, CutRotor};
 use crate::solve::motion_subspace::MotionSubspace;
 use crate::solve::multipliers;
 use crate::solve::reduced_mass_matrix::ReducedTree;
@@ -35,6 +35,8 @@ pub struct ForwardDynamics {
     gram_schmidt: Vec<GramSchmidtTree>,
     /// The rows that no joint of the trees owns.
     loop_rows: Vec<usize>,
+    /// The armatures that no joint of the trees has.
+    cut_rotors: Vec<CutRotor>,
 }
 
 impl ForwardDynamics {
@@ -65,7 +67,8 @@ impl ForwardDynamics {
             eliminated.push(EliminatedTree::new(system, in_global_frame, Basis::Global));
             eliminated.push(EliminatedTree::new(system, in_own_frames, Basis::Own));
         }
-        Self { subspaces, eliminated, reduced, gram_schmidt, loop_rows }
+        let cut_rotors = CutRotor::all(system);
+        Self { subspaces, eliminated, reduced, gram_schmidt, loop_rows, cut_rotors }
     }
 
     /// Solves eq. (17): for the multipliers, and for the accelerations if these are asked for.
@@ -87,7 +90,8 @@ impl ForwardDynamics {
             let excitation = Excitation::by_forces(system, dynamics, subspaces);
             let free = tree.respond(&mut system.graph, &excitation).motions;
             let rows = (&self.loop_rows[..], &kinematics.gamma[..]);
-            let (motions, multipliers) = loop_closure::close(&mut system.graph, kinematics, tree, rows, free);
+            let (graph, rotors) = (&mut system.graph, &self.cut_rotors);
+            let (motions, multipliers) = loop_closure::close(graph, kinematics, tree, rows, rotors, free);
             listed(&motions).into_iter().chain(multipliers).collect()
         };
         let eliminated = self.eliminated.iter().map(of_eliminated).collect();
@@ -113,8 +117,14 @@ impl ForwardDynamics {
             let excitation =
                 Excitation { forced, ..Excitation::none(tree.n_moving_bodies(), tree.joints.len()) };
             let free = tree.respond(graph, &excitation).motions;
-            let (motions, _) =
-                loop_closure::close(graph, kinematics, tree, (&self.loop_rows, &changes), free);
+            let (motions, _) = loop_closure::close(
+                graph,
+                kinematics,
+                tree,
+                (&self.loop_rows, &changes),
+                &self.cut_rotors,
+                free,
+            );
             listed(&motions)
         });
         let mut projected: Vec<_> = projected.collect();

@@ -118,7 +118,7 @@ pub(crate) fn states(model: &Model, module: &Module) -> Vec<(String, String)> {
             to.extend(parts.iter().map(|part| (format!("{name} {part}"), unit.to_owned())));
         };
         match *place {
-            Place::Scalar { joint, coordinate } => {
+            Place::Scalar { joint, coordinate } | Place::Turn { joint, coordinate } => {
                 let kinds = model.joints[joint].kind.coordinates();
                 let kind = kinds[coordinate];
                 let name = match kinds {
@@ -126,7 +126,9 @@ pub(crate) fn states(model: &Model, module: &Module) -> Vec<(String, String)> {
                     _ => format!("{}.{}", model.joints[joint].name, kind.name()),
                 };
                 let [unit, rate] = if kind.is_angle() { ["rad", "rad/s"] } else { ["m", "m/s"] };
-                rates.push((format!("{name} rate"), rate.to_owned()));
+                if matches!(place, Place::Scalar { .. }) {
+                    rates.push((format!("{name} rate"), rate.to_owned()));
+                }
                 coordinates.push((name, unit.to_owned()));
             }
             Place::Orientation => {

@@ -12,7 +12,8 @@ use crate::wire::*;
 /// line, the Euler parameters of the second body in the first's frame; after the joints, of each free body `r` and `p`.
 /// u has their rates: of Euler parameters the angular velocity relative to the first body in the second's frame, rad/s,
 /// of free bodies `s` and `w'`. Coordinates that couplers, drivers or loops determine as functions of others and of
-/// time are not among them.
+/// time are not among them. Last in x come turn references of joints that close loops, where something depends on how
+/// often these have turned; they have no rates in u.
 ///
 /// # Loops
 /// Joints that are not of the tree close loops. What is left of their rows is the closure `Φ_c(t, x) = 0`. Of the
@@ -119,6 +120,14 @@ pub enum JointPlace {
         /// Index of the body.
         body: u16,
     },
+    /// The *turn reference* of an angle of a joint that closes a loop: a number near the angle, rad, that says how
+    /// many whole turns it has made. One number in x, none in u.
+    Turn {
+        /// Index of the joint.
+        joint: u16,
+        /// Which of the joint's coordinates it is.
+        coordinate: u16,
+    },
 }
 
 impl JointLayout<'_> {
@@ -137,7 +146,7 @@ impl JointPlace {
     /// How many numbers it has in x.
     pub const fn n_coordinates(self) -> usize {
         match self {
-            Self::Scalar { .. } => 1,
+            Self::Scalar { .. } | Self::Turn { .. } => 1,
             Self::Orientation { .. } => 4,
             Self::Body { .. } => 7,
         }
@@ -149,6 +158,7 @@ impl JointPlace {
             Self::Scalar { .. } => 1,
             Self::Orientation { .. } => 3,
             Self::Body { .. } => 6,
+            Self::Turn { .. } => 0,
         }
     }
 }

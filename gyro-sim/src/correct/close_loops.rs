@@ -162,10 +162,12 @@ impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
             for (index, (before, after)) in before.iter().zip(after).enumerate() {
                 // Euler parameters change by half the angle of a turn.
                 let scale = match place {
-                    JointPlace::Scalar { .. } if is_angle(mechanism, place) => one,
+                    _ if is_angle(mechanism, place) => one,
                     JointPlace::Body { .. } if index >= 3 => two,
                     JointPlace::Orientation { .. } => two,
-                    JointPlace::Scalar { .. } | JointPlace::Body { .. } => one / mechanism.size(),
+                    JointPlace::Scalar { .. } | JointPlace::Turn { .. } | JointPlace::Body { .. } => {
+                        one / mechanism.size()
+                    }
                 };
                 let change = ((*after - *before) * scale).abs();
                 if change > M::Scalar::constant(FARTHEST) {
@@ -218,7 +220,9 @@ fn positions<'a, T>(layout: &JointLayout<'a>, x: &'a [T]) -> impl Iterator<Item 
 }
 
 fn is_angle<M: Mechanism>(mechanism: &M, place: JointPlace) -> bool {
-    let JointPlace::Scalar { joint, coordinate } = place else { return false };
+    let (JointPlace::Scalar { joint, coordinate } | JointPlace::Turn { joint, coordinate }) = place else {
+        return false;
+    };
     let joint = mechanism.description().joints.get(usize::from(joint));
     let kind = joint.and_then(|joint| joint.coordinates.get(usize::from(coordinate)));
     kind == Some(&Coordinate::Angle)
@@ -230,7 +234,7 @@ fn normalise_orientations<T: Scalar>(layout: &JointLayout<'_>, x: &mut [T]) {
     for place in layout.places {
         let Some((own, others)) = rest.split_at_mut_checked(place.n_coordinates()) else { return };
         match place {
-            JointPlace::Scalar { .. } => {}
+            JointPlace::Scalar { .. } | JointPlace::Turn { .. } => {}
             JointPlace::Orientation { .. } => normalise(own),
             JointPlace::Body { .. } => normalise(&mut own[3..]),
         }

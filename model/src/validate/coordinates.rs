@@ -1,7 +1,7 @@
 //! Couplers and drivers must not contradict one another, and forces and outputs must act on something.
 
 use super::{Owner, Place, Problem, Side};
-use crate::{CoordinateKind, ForceKind, JointCoordinate, Model, OutputKind, Support, Tree};
+use crate::{CoordinateKind, ForceKind, JointCoordinate, Model, OutputKind, Support};
 
 /// Everything that is wrong, couplers first.
 pub(crate) fn problems(model: &Model) -> Vec<Problem> {
@@ -19,28 +19,8 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     }
     found.extend(contradicting_drivers(model, &mut groups));
     found.extend((0..model.forces.len()).filter_map(|index| idle_force(model, index)));
-    found.extend(cut_armature(model));
     found.extend((0..model.outputs.len()).filter_map(|index| fixed_output(model, index)));
     found
-}
-
-/// The armature of a joint that closes a loop: all bodies are reached over other joints, of which each is asked for as
-/// much as this one.
-fn cut_armature(model: &Model) -> Option<Problem> {
-    let has_armature = |joint: &usize| !model.joints[*joint].armature.is_zero();
-    if !(0..model.joints.len()).any(|joint| has_armature(&joint)) {
-        return None;
-    }
-    let index = Tree::of_coordinates(model).loop_joints.into_iter().find(has_armature)?;
-    Some(Problem {
-        place: Place::joint(index, "armature"),
-        also: None,
-        message: format!("joint `{}` closes a loop and has an armature", model.joints[index].name),
-        label: "every joint of its loop has an armature, a spring, a stop, a coupler or a driver".to_owned(),
-        help: "leave one joint of the loop without these: a loop is cut at such a joint. Or give a body that turns \
-               with the joint about the same axis the inertia"
-            .to_owned(),
-    })
 }
 
 /// Whether a coordinate is one of the model's; others stand for what the model file does not name correctly.

@@ -86,7 +86,7 @@ impl Rate {
         for &place in layout.places {
             let n_lengths = match place {
                 JointPlace::Scalar { .. } => 1,
-                JointPlace::Orientation { .. } => 0,
+                JointPlace::Orientation { .. } | JointPlace::Turn { .. } => 0,
                 JointPlace::Body { .. } => 3,
             };
             for component in 0..place.n_rates() {

@@ -23,6 +23,26 @@ impl Page {
         }
     }
 
+    /// A spring on every coordinate, and armatures on some of the joints that can have one: whichever joint of a loop
+    /// is cut, something holds it. Other dice than those of the rest decide on it.
+    pub fn hold_all(&mut self) {
+        for (index, (joint, coordinate)) in self.coordinates().into_iter().enumerate() {
+            let (stiffness, free) =
+                (self.rotors.pick(&["0.3", "2", "7.5"]), self.rotors.pick(&["0", "-0.4", "1.1"]));
+            self.elements += &format!(
+                "\n[[force]]\nname = \"h{index}\"\nkind = \"spring\"\njoint = \"j{joint}\"\ncoordinate = \
+                 {coordinate:?}\nstiffness = {stiffness}\nfree = {free}\n"
+            );
+        }
+        for joint in &mut self.joints {
+            let kind = joint.kind.name;
+            let has_rotor = matches!(kind, "revolute" | "prismatic") && !joint.text.contains("armature");
+            if has_rotor && self.rotors.once_in(2) {
+                joint.text += &format!("armature = {}\n", self.rotors.pick(&["0.02", "0.3"]));
+            }
+        }
+    }
+
     fn along_coordinate(&mut self, kind: &str) -> Option<String> {
         let coordinates = self.coordinates();
         if coordinates.is_empty() {

@@ -56,6 +56,9 @@ fn text(mut page: Page) -> String {
     let places = loops::places(&page.read());
     page.forces(&places);
     page.outputs();
+    if page.is_closed && page.rotors.once_in(3) {
+        page.hold_all();
+    }
     page.read();
     page.text()
 }

@@ -72,6 +72,9 @@ fn freedom(written: &Expr) -> Result<Freedom, Refusal> {
         Some("Scalar") => {
             Freedom::Scalar(JointCoordinate { joint: number("joint")?, coordinate: number("coordinate")? })
         }
+        Some("Turn") => {
+            Freedom::Turn(JointCoordinate { joint: number("joint")?, coordinate: number("coordinate")? })
+        }
         Some("Orientation") => Freedom::Orientation { joint: number("joint")? },
         Some("Body") => Freedom::Body { moving_body: number("body")? },
         _ => return Err(refused(written)),

@@ -352,6 +352,7 @@ fn layout(joints: &JointLayout) -> String {
             Freedom::Scalar(on) => {
                 format!("Scalar {{ joint: {}, coordinate: {} }}", on.joint, on.coordinate)
             }
+            Freedom::Turn(on) => format!("Turn {{ joint: {}, coordinate: {} }}", on.joint, on.coordinate),
             Freedom::Orientation { joint } => format!("Orientation {{ joint: {joint} }}"),
             Freedom::Body { moving_body } => format!("Body {{ body: {moving_body} }}"),
         };

@@ -11,7 +11,7 @@ use crate::rates::rates;
 use crate::seed::Seed;
 use crate::tape::{Tape, Term, Written};
 use crate::textbook::{Evaluation, Textbook};
-use gyro_model::Model;
+use gyro_model::{JointCoordinate, Model};
 
 /// What claims are made of: both sides at a point that is not chosen yet.
 pub(super) struct Case<'a> {
@@ -71,6 +71,11 @@ impl<'a> Case<'a> {
             textbook,
             tape,
         }
+    }
+
+    /// The place of an angle among those that have turn references.
+    pub fn turn(&self, on: JointCoordinate) -> Option<usize> {
+        self.model.turn_references().iter().position(|turn| *turn == on)
     }
 
     /// Number of bodies that have coordinates.

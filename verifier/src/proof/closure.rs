@@ -9,7 +9,7 @@ use super::elimination::Eliminated;
 use super::partition::{dot, turning};
 use super::residuals::differences;
 use crate::field::Field;
-use crate::joints::{JointLayout, Place};
+use crate::joints::{Freedom, JointLayout, Place};
 use crate::point::Point;
 use crate::program::Source;
 use crate::tape::Term;
@@ -51,12 +51,24 @@ pub fn close_positions<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let changes = differences(&changed, &case.joints);
     let (of_x, of_rest) = changes.split_at(layout.n_coordinates);
     let mut residuals = of_rest.to_vec();
+    residuals.extend(turns_differ(case, layout, &changed)?);
     residuals.extend(layout.euler().map(|p| dot(&case.joints[p..p + 4], &of_x[p..p + 4])));
     let start = case.maximal(&case.joints);
     let phi = case.textbook(&start)?.phi()?;
     let moved = rates_of_closure(case, layout, of_x)?;
     residuals.extend(moved.iter().zip(of_closure(layout, &phi)).map(|(moved, phi)| moved.add(&phi)));
     Some(residuals)
+}
+
+/// Turn references are set to the angles that the state has before.
+fn turns_differ<'a>(case: &Case<'a>, layout: &JointLayout, found: &[Term<'a>]) -> Option<Vec<Term<'a>>> {
+    let maximal = case.maximal(&case.joints);
+    let textbook = case.textbook(&maximal)?;
+    let turns = layout.places.iter().filter_map(|place| match place.of {
+        Freedom::Turn(on) => Some((place.x, on)),
+        _ => None,
+    });
+    turns.map(|(x, on)| Some(found[x].sub(&textbook.continuous_angle(on)?))).collect()
 }
 
 /// u changes such that `dΦ_c/dt = 0`; nothing else does. Rates at which that is so already are left as they are.

@@ -145,6 +145,7 @@ pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
                 Reading::Orientation(numbers) => (numbers.to_vec(), [x, u].concat()),
                 _ => return None,
             },
+            Freedom::Turn(_) => continue,
             Freedom::Body { moving_body } => {
                 let found = [maximal.position(moving_body), maximal.velocity(case.model, moving_body)];
                 (found.concat(), [x, u].concat())
@@ -155,7 +156,7 @@ pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let (work, turns) = maximal.state[13 * case.n_bodies()..].split_at(usize::from(layout.has_work));
     residuals.extend(differences(work, &case.joints[layout.n_motion()..]));
     for (turn, found) in case.model.turn_references().into_iter().zip(turns) {
-        let Some(place) = layout.scalar(turn) else {
+        let Some(place) = layout.scalar(turn).or_else(|| layout.turn(turn)) else {
             residuals.extend(angle_differs(case, layout, textbook.reading(turn)?, turn, found));
             continue;
         };
@@ -220,6 +221,7 @@ pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
                 Reading::Orientation(numbers) => numbers.to_vec(),
                 _ => return None,
             },
+            Freedom::Turn(on) => vec![case.point.turn_reference(case.model, case.turn(on)?).clone()],
             Freedom::Body { moving_body } => {
                 [case.point.position(moving_body), case.point.velocity(case.model, moving_body)].concat()
             }
@@ -271,6 +273,10 @@ fn coordinate_rates<'a>(case: &Case<'a>, layout: &JointLayout) -> Vec<Term<'a>> 
         let (coordinates, rates) = place.of.sizes();
         let u = &joints[layout.n_coordinates + place.u..][..rates];
         let found = &found[place.x..place.x + coordinates];
+        if let Freedom::Turn(_) = place.of {
+            // It moves as that of the maximal state.
+            continue;
+        }
         let Some(euler) = place.of.euler() else {
             residuals.extend(differences(found, u));
             continue;

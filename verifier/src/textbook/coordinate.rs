@@ -47,6 +47,11 @@ impl<F: Field> Evaluation<'_, F> {
         Some(reference + rest)
     }
 
+    /// The continuous value of an angle that has a turn reference. `None` where it is not defined.
+    pub fn continuous_angle(&self, on: JointCoordinate) -> Option<F> {
+        Some(self.coordinate(on, &self.still)?.value)
+    }
+
     /// How fast the angle of `(C, S)` changes along the motion, `(C S' − S C') / (S² + C²)`: off the constraints not
     /// the rate of the coordinate.
     pub fn angle_rate(&self, on: JointCoordinate) -> Option<F> {

@@ -75,6 +75,10 @@ impl ModuleWriter<'_> {
                 let joint = index(joint);
                 quote! { gyro_sim::JointPlace::Orientation { joint: #joint } }
             }
+            JointPlace::Turn { joint, coordinate } => {
+                let [joint, coordinate] = [joint, coordinate].map(index);
+                quote! { gyro_sim::JointPlace::Turn { joint: #joint, coordinate: #coordinate } }
+            }
             JointPlace::Body { body } => {
                 let body = index(body);
                 quote! { gyro_sim::JointPlace::Body { body: #body } }

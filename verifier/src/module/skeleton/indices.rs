@@ -26,7 +26,7 @@ pub(super) fn indices(model: &Model, joints: Option<&JointLayout>) -> String {
 /// Coordinates, rates; bodies, their rates.
 fn of_joints(model: &Model, joints: &JointLayout) -> String {
     let name = |of: Freedom| match of {
-        Freedom::Scalar(on) => &model.joints[on.joint].name,
+        Freedom::Scalar(on) | Freedom::Turn(on) => &model.joints[on.joint].name,
         Freedom::Orientation { joint } => &model.joints[joint].name,
         Freedom::Body { moving_body } => &model.bodies[model.coordinate_bodies()[moving_body]].name,
     };
@@ -37,6 +37,7 @@ fn of_joints(model: &Model, joints: &JointLayout) -> String {
         },
         Freedom::Orientation { .. } => "orientation",
         Freedom::Body { .. } => "body",
+        Freedom::Turn(_) => "turn",
     };
     let of = |wanted: &str, are_rates: bool| {
         let places = joints.places.iter().filter(|place| inner(place.of) == wanted);
