@@ -35,7 +35,7 @@ pub enum Variable {
         /// Which derivative.
         order: usize,
     },
-    /// An element of an array that a loop fills, outside of loops.
+    /// An element of an array that a loop fills: outside of loops, or of what the part before has left.
     Kept {
         /// Which array.
         array: usize,
@@ -280,6 +280,7 @@ fn local(equations: &Equations, local: &Local) -> Variable {
     match *local {
         Local::Factor(column) => Variable::Factor(column),
         Local::Row { array, offset, column } => Variable::Row { array, offset, column },
+        Local::Carried { array, column } => Variable::Kept { array, row: 0, column },
         Local::Element { first, stride } => {
             let (argument, first) = equations.element(first).expect("it is an element of an argument");
             Variable::Strided { argument, first, stride }

@@ -13,7 +13,7 @@ use cranelift_codegen::ir::{
 };
 use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::FunctionBuilder;
-use gyro_codegen::tape::{Direction, Loop, Operation, Place, Tape};
+use gyro_codegen::tape::{At, Direction, Loop, Operation, Place, Tape};
 use gyro_codegen::{ScheduledKernel, Variable};
 use gyro_sim::fused::IS_FUSED;
 
@@ -198,14 +198,10 @@ impl Writer<'_, '_> {
         let part = Part { number, count: each.count, table, columns: each.table.first().map_or(0, Vec::len) };
         let mut values = Vec::with_capacity(each.body.operations.len());
         let n = each.body.operations.len();
-        self.operations(known, &Line::new(&each.body, each.values.iter()), (n, Some(part)), &mut values);
-        let row = self.shape.kept(each.array, each.offset, 0);
-        let stride = self.shape.columns(each.array);
-        let base = self.strided(known, Array::Work, (number, stride));
-        self.reaches(Array::Work, row + stride * each.count);
-        for (column, value) in each.values.iter().enumerate() {
-            let (value, offset) = (values[value.0 as usize], self.width.bytes(row + column));
-            self.builder.ins().store(MemFlagsData::trusted(), value, base, offset);
+        self.operations(known, &Line::new(&each.body, each.values()), (n, Some(part)), &mut values);
+        for row in &each.rows {
+            let stored = row.values.iter().map(|value| values[value.0 as usize]);
+            self.store_row(known, (row.array, row.at), (number, each.count), stored);
         }
         let next = self.builder.ins().iadd_imm_s(number, step);
         self.jump(condition, next);
@@ -355,6 +351,29 @@ impl Writer<'_, '_> {
             |n| self.builder.ins().stack_load(self.pointer, self.width.ty(), slot, self.width.bytes(n));
         let first = result(0);
         if FUNCTIONS[function] == "sin_cos" { [first, result(1)] } else { [first, first] }
+    }
+
+    /// Stores a row of an array for a part, whose number this is of so many.
+    fn store_row(
+        &mut self,
+        known: &Known,
+        (array, at): (usize, At),
+        (number, count): (Value, usize),
+        values: impl Iterator<Item = Value>,
+    ) {
+        let At::Part(offset) = at else {
+            for (column, value) in values.enumerate() {
+                self.store(known, (Array::Work, self.shape.kept(array, 0, column)), value);
+            }
+            return;
+        };
+        let (row, stride) = (self.shape.kept(array, offset, 0), self.shape.columns(array));
+        let base = self.strided(known, Array::Work, (number, stride));
+        self.reaches(Array::Work, row + stride * count);
+        for (column, value) in values.enumerate() {
+            let offset = self.width.bytes(row + column);
+            self.builder.ins().store(MemFlagsData::trusted(), value, base, offset);
+        }
     }
 
     fn variable(&mut self, known: &Known, variable: Variable, part: Option<Part>, at: usize) -> Value {

@@ -1,7 +1,7 @@
 //! Kernels by interpretation of their tapes: in any number type, where speed does not matter.
 
 use crate::engine::{Arguments, Array, Engine, Layout, Shape, reads_curves, write_curves};
-use gyro_codegen::tape::{Direction, Loop, Operation, Place, Tape};
+use gyro_codegen::tape::{At, Direction, Loop, Operation, Place, Tape};
 use gyro_codegen::{Kernel, Scheduled, Variable};
 use gyro_sim::Scalar;
 
@@ -64,9 +64,11 @@ impl<T: Scalar> Run<'_, T> {
             let mut numbers = Vec::with_capacity(each.body.operations.len());
             let end = each.body.operations.len();
             self.operations(&each.body, (end, Some((part, &each.table[part]))), &mut numbers);
-            for (column, &value) in each.values.iter().enumerate() {
-                let place = self.shape.kept(each.array, part + each.offset, column);
-                self.work[place] = number(&numbers, value);
+            for row in &each.rows {
+                let at = if let At::Part(offset) = row.at { part + offset } else { 0 };
+                for (column, &value) in row.values.iter().enumerate() {
+                    self.work[self.shape.kept(row.array, at, column)] = number(&numbers, value);
+                }
             }
         }
     }

@@ -6,10 +6,10 @@ use crate::emit::results::{Copied, Source, evenly};
 use crate::emit::tokens::{Body, Variables, Writer};
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
-use crate::repeat::{Direction, Local, Shape};
-use crate::tape::{Kernel, Loop};
+use crate::repeat::{At, Direction, Local, Row, Shape};
+use crate::tape::{Kernel, Loop, Place};
 use proc_macro2::{Ident, TokenStream};
-use quote::quote;
+use quote::{ToTokens, quote};
 use std::collections::BTreeSet;
 
 /// Writes a kernel with loops, with stand-ins for its literals.
@@ -112,9 +112,16 @@ impl<V: Variables> Repeated<'_, V> {
             symbols.iter().filter(|s| matches!(s, Symbol::Local(_))).copied().collect();
         let bindings = writer.bindings(&locals);
         let named = std::slice::from_ref(&repeat.body.named);
-        let temporaries: TokenStream = writer.parts(named, &repeat.values).into_iter().collect();
-        let values = writer.values(&repeat.values);
-        let (array, row) = (array_name(repeat.array), row(repeat.offset));
+        let stored: Vec<Place> = repeat.values().copied().collect();
+        let temporaries: TokenStream = writer.parts(named, &stored).into_iter().collect();
+        let rows = repeat.rows.iter().map(|Row { array, at, values }| {
+            let (array, values) = (array_name(*array), writer.values(values));
+            let row = match at {
+                At::Part(offset) => row(*offset),
+                At::Only => index(0).into_token_stream(),
+            };
+            quote! { #array[#row] = [#(#values),*]; }
+        });
         let count = index(repeat.count);
         let range = match repeat.direction {
             Direction::Forward => quote! { 0..#count },
@@ -126,7 +133,7 @@ impl<V: Variables> Repeated<'_, V> {
             for i in #range {
                 #bindings
                 #temporaries
-                #array[#row] = [#(#values),*];
+                #(#rows)*
             }
         };
         symbols.extend(self.repeat.locals.iter().filter_map(|local| match local {
@@ -163,6 +170,10 @@ impl<V: Variables> Variables for Repeated<'_, V> {
             }
             Local::Row { array, offset, column } => {
                 let (array, row, column) = (array_name(array), row(offset), index(column));
+                quote! { #array[#row][#column] }
+            }
+            Local::Carried { array, column } => {
+                let (array, row, column) = (array_name(array), index(0), index(column));
                 quote! { #array[#row][#column] }
             }
             Local::Element { first, stride } => {

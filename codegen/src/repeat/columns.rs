@@ -24,6 +24,8 @@ pub enum Source {
 pub struct Column {
     /// Computed in the orbit's loop.
     pub orbit: Option<Orbit>,
+    /// The orbit's loop alone reads it, and of the part before: each part overwrites what that has left.
+    pub is_carried: bool,
     /// Rows that are filled outside of loops.
     pub rows: BTreeMap<i64, Place>,
     /// The first loop that reads each of them.
@@ -68,7 +70,7 @@ impl Columns {
                 sources.insert(orbit, of?);
             }
         }
-        filling.read_outside();
+        filling.read_outside(&sources);
         Some(Self { all: filling.columns, sources })
     }
 
@@ -78,10 +80,20 @@ impl Columns {
         computed.is_some_and(|index| (loops.all[index].first..=loops.all[index].last).contains(&row))
     }
 
-    /// A column that an orbit's loop fills.
-    pub fn of_orbit(&self, orbit: Orbit) -> Option<usize> {
-        self.all.iter().position(|column| column.orbit == Some(orbit))
+    /// The column in which the number of an orbit's part stands when its loop is done.
+    pub fn of_part(&self, loops: &Loops, orbits: &Orbits, (orbit, part): (Orbit, i64)) -> Option<usize> {
+        column_of_part(&self.all, (loops, orbits), (orbit, part))
     }
+}
+
+fn column_of_part(
+    columns: &[Column],
+    (loops, orbits): (&Loops, &Orbits),
+    (orbit, part): (Orbit, i64),
+) -> Option<usize> {
+    let is_last = || loops.of_orbit(orbits, orbit).is_some_and(|index| loops.last_done(index) == part);
+    let serves = |column: &Column| column.orbit == Some(orbit) && (!column.is_carried || is_last());
+    columns.iter().position(serves)
 }
 
 impl Filling<'_> {
@@ -134,14 +146,17 @@ impl Filling<'_> {
                 let straight = rows
                     .filter(|(row, _)| *row < range.first || *row > range.last)
                     .collect::<BTreeMap<_, _>>();
-                return Some(Source::Row { column: self.column(index, Some(of), straight), offset });
+                let is_carried = computed == index && offset.abs() == 1;
+                let column = self.column(index, (Some(of), is_carried), straight);
+                return Some(Source::Row { column, offset });
             }
         }
         let is_own = |&(_, term): &(i64, Place)| self.loops.of_term[term].is_some_and(|(of, _)| of == index);
         if read.iter().any(is_own) {
             return None;
         }
-        Some(Source::Row { column: self.column(index, None, read.into_iter().collect()), offset: 0 })
+        let column = self.column(index, (None, false), read.into_iter().collect());
+        Some(Source::Row { column, offset: 0 })
     }
 
     /// How far apart the elements of an argument are that are read.
@@ -159,14 +174,20 @@ impl Filling<'_> {
     }
 
     /// A column with these rows, one that there is already if it has none that differ.
-    fn column(&mut self, reader: usize, orbit: Option<Orbit>, rows: BTreeMap<i64, Place>) -> usize {
+    fn column(
+        &mut self,
+        reader: usize,
+        (orbit, is_carried): (Option<Orbit>, bool),
+        rows: BTreeMap<i64, Place>,
+    ) -> usize {
         let agrees = |column: &Column| {
-            column.orbit == orbit
+            (column.orbit, column.is_carried) == (orbit, is_carried)
                 && (orbit.is_some() || column.reader == reader)
                 && rows.iter().all(|(row, term)| column.rows.get(row).is_none_or(|known| known == term))
         };
         let at = self.columns.iter().position(agrees).unwrap_or_else(|| {
-            self.columns.push(Column { orbit, rows: BTreeMap::new(), readers: BTreeMap::new(), reader });
+            let (rows, readers) = (BTreeMap::new(), BTreeMap::new());
+            self.columns.push(Column { orbit, is_carried, rows, readers, reader });
             self.columns.len() - 1
         });
         let column = &mut self.columns[at];
@@ -179,11 +200,12 @@ impl Filling<'_> {
     }
 
     /// Whatever is read outside of loops has a column.
-    fn read_outside(&mut self) {
-        let mut needed: Vec<Orbit> = Vec::new();
+    fn read_outside(&mut self, sources: &BTreeMap<Orbit, Vec<Source>>) {
+        let mut needed: Vec<(Orbit, i64)> = Vec::new();
         let mut need = |term: Place| {
-            if self.loops.of_term[term].is_some() {
-                needed.extend(self.orbits.of_term[term].map(|(orbit, _)| orbit));
+            if let (Some((_, part)), Some((orbit, _))) = (self.loops.of_term[term], self.orbits.of_term[term])
+            {
+                needed.push((orbit, part));
             }
         };
         for (term, operands) in self.orbits.operands.iter().enumerate() {
@@ -194,10 +216,16 @@ impl Filling<'_> {
         self.terms.roots.iter().for_each(|root| need(root.term));
         let same = self.columns.iter().flat_map(|column| column.rows.values());
         same.for_each(|&term| need(term));
-        for orbit in needed {
-            if !self.columns.iter().any(|column| column.orbit == Some(orbit)) {
+        for source in sources.values().flatten() {
+            if let Source::Same(term) = source {
+                need(*term);
+            }
+        }
+        for part in needed {
+            if column_of_part(&self.columns, (self.loops, self.orbits), part).is_none() {
                 self.columns.push(Column {
-                    orbit: Some(orbit),
+                    orbit: Some(part.0),
+                    is_carried: false,
                     rows: BTreeMap::new(),
                     readers: BTreeMap::new(),
                     reader: 0,

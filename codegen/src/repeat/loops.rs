@@ -431,6 +431,12 @@ impl Loops {
         orbits.members[orbit].iter().find_map(|&term| self.of_term[term]).map(|(index, _)| index)
     }
 
+    /// The part that a loop does last.
+    pub fn last_done(&self, index: usize) -> i64 {
+        let Loop { direction, first, last, .. } = self.all[index];
+        if direction == Direction::Forward { last } else { first }
+    }
+
     /// The parts of a loop in the order in which it goes through them.
     pub fn parts(&self, index: usize) -> Vec<i64> {
         let Loop { direction, first, last, .. } = self.all[index];

@@ -16,7 +16,7 @@ mod signs;
 mod terms;
 
 pub use loops::Direction;
-pub use rolled::{Before, Local, Repeat, Repetition, Rolled, Shape};
+pub use rolled::{At, Before, Local, Repeat, Repetition, Rolled, Row, Shape};
 
 use crate::effort::Effort;
 use crate::expr::graph::{ExprId, Graph, Node};

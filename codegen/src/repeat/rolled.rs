@@ -18,6 +18,8 @@ pub enum Local {
     Factor(usize),
     /// A row of an array, so many after the part's place.
     Row { array: usize, offset: usize, column: usize },
+    /// What the part before has left in the only row of an array.
+    Carried { array: usize, column: usize },
     /// An element of an argument, so many apart from part to part.
     Element { first: Symbol, stride: usize },
     /// A number that is computed before, the same for all parts.
@@ -36,13 +38,30 @@ pub struct Repeat {
     pub locals: Vec<Local>,
     /// The body's expressions.
     pub graph: Graph,
-    /// What it computes for each part, in terms of these: a row of its array.
-    pub values: Vec<ExprId>,
-    /// The array that these are stored in, so many rows after the part's place.
-    pub array: usize,
-    pub offset: usize,
+    /// What it computes for each part, in terms of these, and where that is stored.
+    pub rows: Vec<Row<ExprId>>,
     /// Operations of the body.
     pub n_operations: usize,
+}
+
+/// Numbers that a loop stores for each part: all of a row of an array.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row<N> {
+    /// Which array.
+    pub array: usize,
+    /// Which of its rows.
+    pub at: At,
+    /// The numbers.
+    pub values: Vec<N>,
+}
+
+/// Which row of an array is that of a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum At {
+    /// So many after the part's number.
+    Part(usize),
+    /// The only one: each part overwrites what the part before has left.
+    Only,
 }
 
 /// What is done before a loop: numbers that its body reads.
@@ -104,7 +123,7 @@ impl Rolled {
     pub fn executed(&self) -> Operations {
         let mut sum = Operations::count(&self.graph, &self.outside_roots());
         for (_, repeat) in &self.loops {
-            let body = Operations::count(&repeat.graph, &repeat.values);
+            let body = Operations::count(&repeat.graph, &repeat.values());
             sum.additions += repeat.count * body.additions;
             sum.multiplications += repeat.count * body.multiplications;
             sum.divisions += repeat.count * body.divisions;
@@ -123,6 +142,13 @@ impl Rolled {
     pub fn n_written(&self) -> usize {
         let inside: usize = self.loops.iter().map(|(_, repeat)| repeat.n_operations).sum();
         Operations::count(&self.graph, &self.outside_roots()).total() + inside
+    }
+}
+
+impl Repeat {
+    /// What it computes for each part.
+    pub fn values(&self) -> Vec<ExprId> {
+        self.rows.iter().flat_map(|row| row.values.iter().copied()).collect()
     }
 }
 
@@ -175,22 +201,24 @@ impl Rolling<'_> {
         Rolled { graph, arrays: arrays.iter().map(shape).collect(), loops, roots }
     }
 
-    /// One array for each loop that computes it, then one for each loop that reads what is gathered for it.
+    /// One array for each loop that computes it, one for each loop that reads what is gathered for it, and one for each
+    /// loop that carries numbers from part to part.
     fn arrays(&self) -> Vec<Array> {
         let n = self.loops.all.len();
         let mut arrays: Vec<Array> = Vec::new();
-        arrays.resize_with(2 * n, Array::default);
+        arrays.resize_with(3 * n, Array::default);
         for (index, found) in self.loops.all.iter().enumerate() {
             for at in [index, n + index] {
                 (arrays[at].first, arrays[at].last) = (found.first, found.last);
             }
         }
         for (place, column) in self.columns.all.iter().enumerate() {
-            let array = match column.orbit.and_then(|orbit| self.loops.of_orbit(self.orbits, orbit)) {
-                Some(index) => index,
-                None => n + column.reader,
-            };
-            let array = &mut arrays[array];
+            let computed = column.orbit.and_then(|orbit| self.loops.of_orbit(self.orbits, orbit));
+            if let (Some(index), true) = (computed, column.is_carried) {
+                arrays[2 * n + index].columns.push(place);
+                continue;
+            }
+            let array = &mut arrays[computed.unwrap_or(n + column.reader)];
             array.columns.push(place);
             array.first = column.rows.keys().fold(array.first, |first, &row| first.min(row));
             array.last = column.rows.keys().fold(array.last, |last, &row| last.max(row));
@@ -202,27 +230,23 @@ impl Rolling<'_> {
     fn place(&self, arrays: &[Array], column: usize, row: i64) -> [usize; 3] {
         let array = arrays.iter().position(|array| array.columns.contains(&column)).expect("all have one");
         let at = arrays[array].columns.iter().position(|&c| c == column).expect("it is there");
+        if self.columns.all[column].is_carried {
+            return [array, 0, at];
+        }
         [array, usize::try_from(row - arrays[array].first).expect("no row is before the first"), at]
     }
 
     /// The values of terms outside of loops, loops' results being read from arrays.
     fn outside(&self, graph: &mut Graph, arrays: &[Array]) -> HashMap<Place, ExprId> {
         let mut values = HashMap::default();
-        // Array and column that hold what an orbit computes.
-        let mut kept: HashMap<Orbit, Option<[usize; 2]>> = HashMap::default();
         for place in 0..self.terms.all.len() {
             let value = match self.loops.of_term[place] {
                 Some((_, part)) => {
                     let (orbit, _) = self.orbits.of_term[place].expect("it is computed in a loop");
-                    let column = kept.entry(orbit).or_insert_with(|| {
-                        let column = self.columns.of_orbit(orbit)?;
-                        let [array, _, column] = self.place(arrays, column, part);
-                        Some([array, column])
-                    });
                     // Nothing outside reads what has no column.
-                    let Some([array, column]) = *column else { continue };
-                    let row =
-                        usize::try_from(part - arrays[array].first).expect("no row is before the first");
+                    let column = self.columns.of_part(self.loops, self.orbits, (orbit, part));
+                    let Some(column) = column else { continue };
+                    let [array, row, column] = self.place(arrays, column, part);
                     let entry = graph.symbol(Symbol::Entry { array, row, column });
                     if self.signs.of_term[&place] { graph.neg(entry) } else { entry }
                 }
@@ -308,20 +332,21 @@ impl Rolling<'_> {
             of_orbit.insert(orbit, value);
         }
         let Body { graph, locals, table, .. } = body;
-        let array = &arrays[index];
-        let stored =
-            array.columns.iter().map(|&column| self.columns.all[column].orbit.expect("its loop fills it"));
-        let values = stored.map(|orbit| of_orbit[&orbit]).collect();
-        let offset = usize::try_from(found.first - array.first).expect("no row is before the first");
+        let offset = usize::try_from(found.first - arrays[index].first).expect("no row is before the first");
+        let carrying = 2 * self.loops.all.len() + index;
+        let rows = [(index, At::Part(offset)), (carrying, At::Only)].into_iter().map(|(array, at)| {
+            let orbit = |&column: &usize| self.columns.all[column].orbit.expect("its loop fills it");
+            let values = arrays[array].columns.iter().map(orbit).map(|orbit| of_orbit[&orbit]);
+            Row { array, at, values: values.collect() }
+        });
+        let rows = rows.filter(|row| !row.values.is_empty()).collect();
         Repeat {
             direction: found.direction,
             count: table.len(),
             table,
             locals,
             graph,
-            values,
-            array: index,
-            offset,
+            rows,
             n_operations: found.orbits.len(),
         }
     }
@@ -387,8 +412,12 @@ impl Body<'_, '_> {
             },
             Source::Row { column, offset } => {
                 let row = loops.all[self.index].first + offset;
+                let is_carried = self.rolling.columns.all[column].is_carried;
                 let [array, offset, column] = self.rolling.place(self.arrays, column, row);
-                self.local(Local::Row { array, offset, column })
+                self.local(match is_carried {
+                    true => Local::Carried { array, column },
+                    false => Local::Row { array, offset, column },
+                })
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::orbits::Orbits;
 use super::shift::{OPERATIONS_A_COPY, Shift, Way};
 use super::terms::Terms;
-use super::{Direction, LEAST_PARTS, Local, Repeat, Rolled, WAYS, rolled_by};
+use super::{At, Direction, LEAST_PARTS, Local, Repeat, Rolled, WAYS, rolled_by};
 use crate::Elimination;
 use crate::equations::Argument;
 use crate::expr::evaluate::{evaluate, sample};
@@ -81,11 +81,15 @@ fn run<F: Float>(rolled: &Rolled, value: &dyn Fn(Symbol) -> F) -> Vec<F> {
             Direction::Backward => (0..repeat.count).rev().collect(),
         };
         for part in parts {
-            let row = evaluate(&repeat.graph, &repeat.values, |symbol| match symbol {
+            let mut computed = evaluate(&repeat.graph, &repeat.values(), |symbol| match symbol {
                 Symbol::Local(place) => local(repeat, place, part, &fixed, &arrays.borrow(), value),
                 symbol => value(symbol),
             });
-            arrays.borrow_mut()[repeat.array][repeat.offset + part] = row;
+            for row in &repeat.rows {
+                let at = if let At::Part(offset) = row.at { offset + part } else { 0 };
+                let rest = computed.split_off(row.values.len());
+                arrays.borrow_mut()[row.array][at] = std::mem::replace(&mut computed, rest);
+            }
         }
     }
     outside(&rolled.roots)
@@ -104,6 +108,7 @@ fn local<F: Float>(
             F::from(repeat.table[part][column].to_f64()).expect("constants are of order one")
         }
         Local::Row { array, offset, column } => arrays[array][part + offset][column],
+        Local::Carried { array, column } => arrays[array][0][column],
         Local::Element { first, stride } => {
             let at = match first {
                 Symbol::Coordinate(x) => Symbol::Coordinate(x + stride * part),

@@ -5,7 +5,7 @@ use crate::expr::constant::Constant;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Program;
 use crate::expr::symbol::Symbol;
-use crate::repeat::{Before, Repeat, Rolled};
+use crate::repeat::{Before, Repeat, Rolled, Row};
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 /// The tape of a kernel without loops.
@@ -74,7 +74,13 @@ impl<'g> Builder<'g> {
     fn repeated(&mut self, named: Vec<Place>, before: &Before, repeat: &Repeat) -> Loop<Symbol, Constant> {
         let fixed = self.values(&before.fixed);
         let stores = before.stores.iter().map(|&(place, value)| (place, self.value(value))).collect();
-        let body = straight(&repeat.graph, &repeat.values);
+        let body = straight(&repeat.graph, &repeat.values());
+        let mut values = body.results.into_iter();
+        let rows = repeat.rows.iter().map(|row| {
+            let values = values.by_ref().take(row.values.len()).collect();
+            Row { array: row.array, at: row.at, values }
+        });
+        let rows = rows.collect();
         Loop {
             after: self.operations.len(),
             named,
@@ -85,9 +91,7 @@ impl<'g> Builder<'g> {
             table: repeat.table.clone(),
             locals: repeat.locals.clone(),
             body: body.outside,
-            values: body.results,
-            array: repeat.array,
-            offset: repeat.offset,
+            rows,
         }
     }
 

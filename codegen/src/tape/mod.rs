@@ -9,7 +9,7 @@ use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
 use crate::repeat::Local;
 
-pub use crate::repeat::{Direction, Shape};
+pub use crate::repeat::{At, Direction, Row, Shape};
 pub(crate) use build::{looped, straight};
 
 /// A number of a tape, by the place of the operation that gives it.
@@ -67,12 +67,8 @@ pub struct Loop<V, C> {
     pub(crate) locals: Vec<Local>,
     /// What is done for a part.
     pub body: Tape<V, C>,
-    /// The numbers of the body that are stored in a row of an array.
-    pub values: Vec<Place>,
-    /// That array.
-    pub array: usize,
-    /// Its row, so many after that of the part's number.
-    pub offset: usize,
+    /// Which numbers of the body are stored when it is done, and where.
+    pub rows: Vec<Row<Place>>,
 }
 
 /// A kernel.
@@ -178,9 +174,7 @@ impl Kernel<Symbol, Constant> {
             table: each.table.iter().map(round).collect(),
             locals: each.locals.clone(),
             body: each.body.map(|symbol| inside(&each.locals, symbol), Constant::to_f64),
-            values: each.values.clone(),
-            array: each.array,
-            offset: each.offset,
+            rows: each.rows.clone(),
         });
         Kernel {
             loops: loops.collect(),
@@ -205,6 +199,11 @@ impl<V, C> Kernel<V, C> {
 }
 
 impl<V, C> Loop<V, C> {
+    /// The numbers of its body that are stored.
+    pub fn values(&self) -> impl Iterator<Item = &Place> + Clone {
+        self.rows.iter().flat_map(|row| &row.values)
+    }
+
     /// What is computed for it.
     pub(crate) fn roots(&self) -> impl Iterator<Item = Place> {
         self.fixed.iter().copied().chain(self.stores.iter().map(|(_, value)| *value))

@@ -10,7 +10,7 @@ use crate::refusal::Refusal;
 
 use std::collections::HashSet;
 use syn::spanned::Spanned;
-use syn::{BinOp, Expr, ExprArray, ExprForLoop, ExprIndex, Item, ItemConst, Local, Pat, RangeLimits, Stmt};
+use syn::{BinOp, Expr, ExprForLoop, ExprIndex, Item, ItemConst, Local, Pat, RangeLimits, Stmt};
 
 impl Reader<'_> {
     /// Reads a statement of what loops need; whether it was one.
@@ -77,8 +77,8 @@ impl Reader<'_> {
         self.bind(name, Known::Table(self.tables.len() - 1), table.span())
     }
 
-    /// `for i in 0..12 { ... }` or `for i in (0..12).rev() { ... }`: bindings, then a row that is stored. Or nothing
-    /// but results that are stored.
+    /// `for i in 0..12 { ... }` or `for i in (0..12).rev() { ... }`: bindings, then rows that are stored. Or nothing but
+    /// results that are stored.
     fn repeated(&mut self, repeated: &ExprForLoop) -> Result<(), Refusal> {
         let Pat::Ident(name) = &*repeated.pat else { return Err(refused(&repeated.pat)) };
         let name = name.ident.to_string();
@@ -88,14 +88,13 @@ impl Reader<'_> {
         {
             return self.copies(&name, parts, repeated);
         }
-        let Some((Stmt::Expr(Expr::Assign(assign), Some(_)), bindings)) = repeated.body.stmts.split_last()
-        else {
+        let is_binding = |statement: &&Stmt| matches!(statement, Stmt::Local(_));
+        let n_bindings = repeated.body.stmts.iter().take_while(is_binding).count();
+        let (bindings, rows) = repeated.body.stmts.split_at(n_bindings);
+        if rows.is_empty() {
             return Err(refused(repeated));
-        };
+        }
         self.before_results(repeated)?;
-        let (Expr::Index(target), Expr::Array(values)) = (&*assign.left, &*assign.right) else {
-            return Err(refused(assign));
-        };
         self.count(parts.len(), repeated)?;
         self.program.loops.push((repeated.span().start().line, repeated.span().end().line));
         let mut is_first = true;
@@ -107,7 +106,9 @@ impl Reader<'_> {
                 let Stmt::Local(local) = statement else { return Err(refused(statement)) };
                 self.binding(local)?;
             }
-            self.row(target, values)?;
+            for statement in rows {
+                self.row(statement)?;
+            }
             let inside: HashSet<String> = self.bound.drain(start..).collect();
             self.leave(inside, &[]);
             // What is unused once is unused always.
@@ -152,14 +153,19 @@ impl Reader<'_> {
         self.keep(place, value, statement)
     }
 
-    /// `kept0[i + 1] = [...];`
-    fn row(&mut self, target: &ExprIndex, values: &ExprArray) -> Result<(), Refusal> {
+    /// `kept0[i + 1] = [...];`, or `kept1[0] = [...];`: an array's only row is overwritten.
+    fn row(&mut self, statement: &Stmt) -> Result<(), Refusal> {
+        let Stmt::Expr(Expr::Assign(assign), Some(_)) = statement else { return Err(refused(statement)) };
+        let (Expr::Index(target), Expr::Array(values)) = (&*assign.left, &*assign.right) else {
+            return Err(refused(assign));
+        };
         let Known::Array(array) = self.known(&target.expr)? else { return Err(refused(target)) };
         let row = self.place(&target.index)?;
         let values =
             values.elems.iter().map(|value| self.expression(value)).collect::<Result<Vec<_>, _>>()?;
+        let is_only = self.arrays[array].rows.len() == 1;
         let Some(stored) = self.arrays[array].rows.get_mut(row) else { return Err(refused(target)) };
-        if stored.len() != values.len() || stored.iter().any(Option::is_some) {
+        if stored.len() != values.len() || !is_only && stored.iter().any(Option::is_some) {
             return Err(Refusal::at(target.span(), "a row is stored twice, or not whole"));
         }
         *stored = values.into_iter().map(Some).collect();

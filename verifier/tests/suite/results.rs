@@ -1,4 +1,5 @@
-//! Results that loops hand over: each place gets its own number once, and nothing is computed after them.
+//! What loops hand over: to the next part in the only row of an array, to results each place its own number once, and
+//! nothing is computed after them.
 
 use crate::support::Page;
 use gyro_codegen::{Functions, Group};
@@ -21,6 +22,53 @@ fn pendulums() -> Page {
     let functions = Functions::of([Group::Maximal, Group::Partition]);
     let module = gyro_codegen::generate_functions(&name, &model, &functions).expect("a module");
     Page { name, model, code: module.code, constants: module.constants }
+}
+
+/// Links one after the other: each part of a loop begins with what the part before has left.
+fn chain() -> Page {
+    let mut text = "format = 1\nname = \"chain\"\n[[body]]\nname = \"b0\"\nfixed = true\n".to_owned();
+    for link in 1..=16 {
+        let carrier = link - 1;
+        let _ = write!(
+            text,
+            "[[body]]\nname = \"b{link}\"\nmass = 1\ninertia = [3, 2, 4]\n[[joint]]\nname = \"j{link}\"\n\
+             kind = \"revolute\"\nfirst = {{ body = \"b{carrier}\", axis = [1, 2, 2], zero = [2, 1, -2], \
+             point = [1, 0, 2] }}\nsecond = {{ body = \"b{link}\", axis = [2, -1, 2], zero = [2, 2, -1], \
+             point = [0, 3, -1] }}\n"
+        );
+    }
+    let name = "chain.toml".to_owned();
+    let model = gyro_model::read(&name, &text).unwrap_or_else(|problems| panic!("{text}\n{problems}"));
+    let module =
+        gyro_codegen::generate_functions(&name, &model, &Functions::of([Group::Joint])).expect("a module");
+    Page { name, model, code: module.code, constants: module.constants }
+}
+
+#[test]
+fn what_a_part_leaves_to_the_next_is_what_that_reads() {
+    let page = chain();
+    let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
+    assert!(report.is_proved(), "{report:?}");
+    let only_row = page.code.find("; 1];\n").expect("an array of one row");
+    let start = page.code[..only_row].rfind("let mut kept").expect("its name") + "let mut ".len();
+    let name = page.code[start..].split(' ').next().expect("a name").to_owned();
+    let replaced = |from: &str, to: &str| {
+        let code = page.code.replacen(from, to, 1);
+        assert_ne!(code, page.code, "no `{from}`");
+        verify(&page.model, &code, &page.constants, Depth::Quick)
+    };
+    let refused = [
+        // Rows that are not there, a number that is stored twice.
+        (format!("            {name}[0] = ["), format!("            {name}[i] = [")),
+        (format!("        {name}[0][0] = "), format!("        {name}[0][1] = ")),
+        (format!("= {name}[0][1];\n"), format!("= {name}[1][1];\n")),
+    ];
+    for (from, to) in &refused {
+        let report = replaced(from, to);
+        assert!(!report.refusals.is_empty(), "`{from}` became `{to}`: {report:?}");
+    }
+    let (from, to) = (format!("= {name}[0][1];\n"), format!("= {name}[0][0];\n"));
+    assert!(!replaced(&from, &to).is_proved(), "`{from}` became `{to}`");
 }
 
 /// What becomes of the module if the first loop that stores to `target` has these words replaced.
