@@ -90,6 +90,12 @@ fn call(kernel: Kernel) -> Option<Call> {
             "x, out",
             "",
         ],
+        Kernel::JointParameterJacobian => [
+            "joint_parameter_jacobian",
+            "x: &Joints, out: &mut <Module as ParameterJacobian>::ParameterJacobian",
+            "x, out",
+            "",
+        ],
         Kernel::LoopClosure => {
             ["loop_closure", "x: &Joints, out: &mut <Module as JointSpace>::Closure", "x, out", ""]
         }

@@ -260,6 +260,7 @@ where
         | Kernel::CloseVelocities
         | Kernel::JointJacobian
         | Kernel::JointInputJacobian
+        | Kernel::JointParameterJacobian
         | Kernel::JointOutputs
         | Kernel::OutputsByState
         | Kernel::OutputsByAccelerations

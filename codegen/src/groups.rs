@@ -15,6 +15,7 @@ pub enum Group {
     Partition,
     Joint,
     Jacobian,
+    ParameterJacobian,
     JointOutputs,
     OutputDerivatives,
     Frames,
@@ -51,6 +52,7 @@ const TABLE: &[Row] = &[
     Row { group: Group::Partition, name: "partition", trait_name: "Partition", needs: &[Group::Kinematics], is_usual: true, what: "the coordinate partition" },
     Row { group: Group::Joint, name: "joint", trait_name: "JointSpace", needs: &[], is_usual: true, what: "joint coordinates" },
     Row { group: Group::Jacobian, name: "jacobian", trait_name: "JointJacobian", needs: &[Group::Joint], is_usual: false, what: "derivatives of the joint form" },
+    Row { group: Group::ParameterJacobian, name: "parameter_jacobian", trait_name: "ParameterJacobian", needs: &[Group::Joint], is_usual: false, what: "derivatives of the joint form by parameters" },
     Row { group: Group::JointOutputs, name: "joint_outputs", trait_name: "JointOutputs", needs: &[Group::Joint], is_usual: false, what: "outputs of a joint state" },
     Row { group: Group::OutputDerivatives, name: "output_derivatives", trait_name: "OutputDerivatives", needs: &[Group::Joint, Group::JointOutputs], is_usual: false, what: "derivatives of the outputs" },
     Row { group: Group::Frames, name: "frames", trait_name: "Frames", needs: &[Group::Joint], is_usual: false, what: "how outputs of kind `velocity` move with a joint state" },
@@ -76,8 +78,9 @@ impl Group {
 
     /// Those that only who asks for them calls.
     pub(crate) fn on_request() -> impl Iterator<Item = Self> {
-        use Group::{Derivatives, Frames, Inverse, JointOutputs, MassMatrix, OutputDerivatives, Regressor};
-        [JointOutputs, OutputDerivatives, Frames, Inverse, MassMatrix, Derivatives, Regressor].into_iter()
+        use Group::*;
+        let of_states = [ParameterJacobian, JointOutputs, OutputDerivatives, Frames];
+        of_states.into_iter().chain([Inverse, MassMatrix, Derivatives, Regressor])
     }
 
     /// Its name on the command line and in model files.
@@ -169,9 +172,11 @@ impl Functions {
             self.0.extend(Group::Reactions.with_needs());
         }
         if !facts.joint_coordinates {
-            [Group::Joint, Group::Jacobian, Group::Reactions].iter().for_each(|group| {
-                self.0.remove(group);
-            });
+            [Group::Joint, Group::Jacobian, Group::ParameterJacobian, Group::Reactions].iter().for_each(
+                |group| {
+                    self.0.remove(group);
+                },
+            );
         }
         self
     }

@@ -6,7 +6,7 @@ use crate::equations::{Charts, Equations};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use crate::groups::Group;
-use crate::joint_space::{Frames, Jacobian, JointSpace, OnRequest, OutputDerivatives};
+use crate::joint_space::{Frames, Jacobian, JointSpace, OnRequest, OutputDerivatives, ParameterJacobian};
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::parameter_setup;
 use std::collections::BTreeMap;
@@ -44,6 +44,7 @@ pub enum Kernel {
     CorrectedSolution,
     JointJacobian,
     JointInputJacobian,
+    JointParameterJacobian,
     LoopClosure,
     ClosureDistances,
     ClosePositions,
@@ -75,8 +76,10 @@ enum Source {
     Charts(fn(&Charts) -> Chosen),
     /// If joint coordinates describe the mechanism: in open trees.
     JointSpace(fn(&JointSpace) -> Chosen),
-    /// If it has few enough rates for the derivatives of the joint form.
+    /// If it is small enough for the derivatives of the joint form, or an open tree.
     Jacobian(fn(&Jacobian) -> Chosen),
+    /// Likewise.
+    ParameterJacobian(fn(&ParameterJacobian) -> Chosen),
     /// If outputs of a joint state are asked for.
     JointOutputs,
     /// If their derivatives are, and exist.
@@ -140,6 +143,7 @@ const TABLE: &[Row] = &[
     row(Kernel::CorrectedSolution, Group::Reactions, "corrected_solution", "both", Source::JointSpace(|s| s.solution.clone().into())),
     row(Kernel::JointJacobian, Group::Jacobian, "joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", Source::Jacobian(|j| j.by_state_and_time.clone())),
     row(Kernel::JointInputJacobian, Group::Jacobian, "joint_input_jacobian", "∂f/∂(inputs)", Source::Jacobian(|j| j.by_inputs.clone())),
+    row(Kernel::JointParameterJacobian, Group::ParameterJacobian, "joint_parameter_jacobian", "∂f/∂(parameters)", Source::ParameterJacobian(|j| j.0.clone())),
     row(Kernel::LoopClosure, Group::Joint, "loop_closure", "Φ of the joints that close loops, in joint coordinates", Source::JointSpace(|s| s.closure.clone().into())),
     row(Kernel::ClosureDistances, Group::Joint, "closure_distances", "squares of distances between the rows of the loops' Jacobian", Source::JointSpace(|s| s.distances.clone().into())),
     row(Kernel::ClosePositions, Group::Joint, "close_positions", "one Newton step of joint coordinates that closes loops", Source::JointSpace(|s| s.closer_coordinates.clone().into())),
@@ -206,6 +210,7 @@ impl Kernel {
             Source::Charts(of) => equations.charts.as_ref().map(of),
             Source::JointSpace(of) => joint_space.map(of),
             Source::Jacobian(of) => joint_space?.jacobian.as_ref().map(of),
+            Source::ParameterJacobian(of) => joint_space?.parameter_jacobian.as_ref().map(of),
             Source::JointOutputs => joint_space?.outputs.clone(),
             Source::OutputDerivatives(of) => joint_space?.output_derivatives.as_ref().map(of),
             Source::Frames(of) => joint_space?.frames.as_ref().map(of),

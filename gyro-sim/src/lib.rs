@@ -16,7 +16,7 @@
 //! | [`Kinematics`] | Φ_q, (Φ_r, Φ_π'), ν, γ | the same |
 //! | [`Dynamics`], [`CorrectedDynamics`] | accelerations at any state, at corrected states | the same |
 //! | [`Partition`], [`Projection`] | independent and dependent coordinates; the least change of a state | the same |
-//! | [`JointSpace`], [`JointJacobian`] | joint coordinates; their derivatives | generated mechanisms that have them |
+//! | [`JointSpace`], [`JointJacobian`], [`ParameterJacobian`] | joint coordinates; their derivatives | generated mechanisms that have them |
 //! | [`CorrectedSolution`] | multipliers and rates' rates at corrected states | the same |
 //! | [`InverseDynamics`], [`MassMatrix`] | τ of given u̇, bias and gravity forces; M and its factor | the same, without loops |
 //! | [`DynamicsDerivatives`], [`Regressor`] | derivatives of forces and accelerations; forces by inertial parameters | the same |
@@ -133,8 +133,8 @@ pub use contract::{
     Buffers, Clearance, Coordinate, Corrected, CorrectedDynamics, CorrectedSolution, Description, Dynamics,
     DynamicsDerivatives, Energy, Exact, FrameBuffers, Frames, InverseDynamics, Jacobian, JacobianBuffers,
     Joint, JointBuffers, JointInfo, JointJacobian, JointLayout, JointOutputs, JointPlace, JointSpace,
-    Kinematics, MassMatrix, Mechanism, Ode, OutputDerivatives, OutputInfo, OutputSlopes, Owner, Partition,
-    Projection, Regressor, RowInfo, System, Terms, set_turn_references,
+    Kinematics, MassMatrix, Mechanism, Ode, OutputDerivatives, OutputInfo, OutputSlopes, Owner,
+    ParameterJacobian, Partition, Projection, Regressor, RowInfo, System, Terms, set_turn_references,
 };
 pub use correct::{
     Baumgarte, CloseLoops, ClosedForm, Correction, Direct, MassWeighted, Partitioned, Partitioning,

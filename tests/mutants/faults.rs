@@ -23,12 +23,17 @@ const HARMLESS: &[(&str, &str)] = &[(
 )];
 
 /// Changes that do no harm and save time: factoring is given up early, mechanisms with one or two rates have no
-/// Jacobian, and those with more than two one after the other no mass matrix in joint frames. File, place and what is
+/// Jacobian, nor those with many that do not ask for it, and those with more than two one after the other no mass matrix
+/// in joint frames. File, place and what is
 /// there instead.
 #[allow(dead_code, reason = "only the build script changes texts")]
 const QUICKER: [(&str, &str, &str); 3] = [
     ("simplify/normal_form/mod.rs", "const MAX_STEPS: usize = 100_000;", "const MAX_STEPS: usize = 10_000;"),
-    ("joint_space/jacobian.rs", "if layout.n_rates > MAX_RATES {", "if layout.n_rates < 3 || layout.n_rates > MAX_RATES {"),
+    (
+        "joint_space/jacobian.rs",
+        "let n_inputs = system.model.inputs.len();",
+        "let n_inputs = system.model.inputs.len(); if layout.n_rates < 3 || layout.n_rates > MAX_RATES && system.model.functions.is_none() { return None; }",
+    ),
     ("joint_space/axis_dynamics.rs", "const MAX_DEPTH: usize = 12;", "const MAX_DEPTH: usize = 2;"),
 ];
 
@@ -341,9 +346,15 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/axis_derivatives.rs", "servo", "speeds[joint][2] = «graph.add(speeds[joint][2], along)»;", "speeds[joint][2]"),
     fault("joint_space/axis_derivatives.rs", "servo", "rho: «graph.add_vec(&change.rho, &torque)»", "change.rho"),
     fault("joint_space/axis_derivatives.rs", "drone", "let of_place = if is_global { «&turned» }", "&by_place"),
+    fault("joint_space/large_jacobian.rs", "barge", "columns[scalar.place.x].clone_from(&by_place[«scalar.place.u»]);", "0"),
+    fault("joint_space/large_jacobian.rs", "barge", "columns[place.x + k].clone_from(&by_place[«place.u + k»])", "place.u"),
+    fault("joint_space/large_jacobian.rs", "barge", "let four = «graph.integer(4)»;", "Graph::ONE"),
+    fault("joint_space/large_jacobian.rs", "barge", "let weights = [along[0][j], along[1][j], along[2][j], «p»];", "Graph::ZERO"),
+    fault("joint_space/large_jacobian.rs", "barge", ".map(|x| (Symbol::Coordinate(x), «graph.symbol(Symbol::Coordinate(x))»))", "Graph::ONE"),
+    fault("joint_space/large_jacobian.rs", "barge", "let forces = «against(&mut system.graph, forces)»;", "forces"),
     fault("joint_space/slopes.rs", "servo", "rigid.into_iter().zip(acting).map(|(a, b)| «graph.sub(a, b)»)", "a"),
     fault("joint_space/slopes.rs", "servo", "entry = «graph.sub(entry, part)»;", "graph.add(entry, part)"),
-    fault("joint_space/slopes.rs", "servo", ".map(|column| column.map(|entry| «graph.neg(entry)»).collect())", "entry"),
+    fault("joint_space/slopes.rs", "servo", "column.into_iter().map(|entry| «graph.neg(entry)»).collect()", "entry"),
     fault("joint_space/regressor.rs", "servo", "let moments = «unit(graph, parameter).moved(graph, &Move::Shift(from_origin))»;", "unit(graph, parameter)"),
     fault("joint_space/regressor.rs", "servo", "wrench = «carried(graph, &of.frame, wrench)»;", "wrench"),
     fault("joint_space/regressor.rs", "drone", "= «self.to_global(graph, &forces)»;", "forces"),

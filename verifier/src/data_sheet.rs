@@ -58,6 +58,7 @@ const WORDS: &[Words] = &[
     says("corrected_derivative", "ẏ but for the accelerations, there", "Writes ẏ; beyond what [`gyro_sim::CorrectedDynamics::corrected_accelerations`] takes"),
     says("joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", "Writes ∂f/∂x and ∂f/∂t"),
     writes("joint_input_jacobian", "∂f/∂(inputs)"),
+    writes("joint_parameter_jacobian", "∂f/∂(parameters)"),
     says("joint_outputs", "outputs of a joint state, u̇ being known", "Writes the outputs of a joint state"),
     writes("outputs_by_state", "∂(outputs)/∂(x, u), u̇ being held"),
     writes("outputs_by_accelerations", "∂(outputs)/∂u̇"),
@@ -247,6 +248,11 @@ fn unavailable(model: &Model, module: &Module) -> Vec<String> {
     const NO_OUTPUTS: &str = "the model file asks for no outputs";
     let has_loops = module.joints.as_ref().is_some_and(|joints| !joints.closure_rows.is_empty());
     let of_outputs = [
+        (
+            !module.implements("ParameterJacobian"),
+            "parameter_jacobian",
+            "too many rates, or third derivatives of tables",
+        ),
         (model.outputs.is_empty(), "joint_outputs", NO_OUTPUTS),
         (model.outputs.is_empty(), "output_derivatives", NO_OUTPUTS),
         (

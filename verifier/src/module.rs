@@ -68,7 +68,7 @@ pub struct Module {
 pub(crate) const PARAMETER_SETUP: &str = "parameter_setup";
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 48] = [
+const FUNCTIONS: [(&str, Form); 49] = [
     (PARAMETER_SETUP, Form::Filling),
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
@@ -102,6 +102,7 @@ const FUNCTIONS: [(&str, Form); 48] = [
     ("close_velocities", Form::JointStores),
     ("joint_jacobian", Form::Jacobian),
     ("joint_input_jacobian", Form::Filling),
+    ("joint_parameter_jacobian", Form::Filling),
     ("joint_outputs", Form::Filling),
     ("outputs_by_state", Form::Filling),
     ("outputs_by_accelerations", Form::Filling),
@@ -364,6 +365,7 @@ impl Module {
             ("closure_distances", self.joints.as_ref().map_or(0, |joints| joints.closure_rows.len())),
             ("joint_jacobian", n_joints * (n_joints + 1)),
             ("joint_input_jacobian", n_joints * model.inputs.len()),
+            ("joint_parameter_jacobian", n_joints * model.parameters.len()),
             ("joint_outputs", outputs),
             ("outputs_by_state", outputs * n_motion),
             ("outputs_by_accelerations", outputs * n_rates),

@@ -293,6 +293,9 @@ fn unavailable(equations: &Equations, group: Group) -> Option<String> {
             Group::OutputDerivatives if space.output_derivatives.is_none() => {
                 "they need third derivatives of tables"
             }
+            Group::ParameterJacobian if space.parameter_jacobian.is_none() => {
+                "too many rates, or third derivatives of tables"
+            }
             Group::Frames if space.frames.is_none() => "no output is of kind `velocity`",
             Group::Inverse | Group::MassMatrix | Group::Derivatives | Group::Regressor
                 if !space.closure_rows.is_empty() =>

@@ -2,7 +2,7 @@
 
 use super::candidates::Candidates;
 use super::coordinates::Coordinates;
-use super::jacobian::{Jacobian, JointForm};
+use super::jacobian::{Jacobian, JointForm, ParameterJacobian};
 use super::layout::Layout;
 use super::observed::{self, Frames, OutputDerivatives};
 use super::on_request::OnRequest;
@@ -41,6 +41,8 @@ pub struct JointSpace {
     pub start: Vec<f64>,
     /// The derivatives of the joint form, unless the mechanism is too large.
     pub jacobian: Option<Jacobian>,
+    /// Those by parameters, likewise.
+    pub parameter_jacobian: Option<ParameterJacobian>,
     /// The numbers of the outputs, in terms of [`Symbol::RateOfRate`] too.
     pub outputs: Option<Chosen>,
     /// Their derivatives, unless a third derivative of a table would be needed.
@@ -138,6 +140,8 @@ impl JointSpace {
             passes,
         };
         let jacobian = functions.has(Group::Jacobian).then(|| Jacobian::derive(system, &form)).flatten();
+        let has_parameters = functions.has(Group::ParameterJacobian);
+        let parameter_jacobian = has_parameters.then(|| ParameterJacobian::derive(system, &form)).flatten();
         let outputs =
             functions.has(Group::JointOutputs).then(|| observed::outputs(system, textbook, &coordinates));
         let output_derivatives = outputs
@@ -161,6 +165,7 @@ impl JointSpace {
             accelerations_at,
             corrected,
             jacobian,
+            parameter_jacobian,
             outputs,
             output_derivatives,
             frames,

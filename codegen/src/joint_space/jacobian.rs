@@ -21,9 +21,10 @@ use crate::expr::symbol::Symbol;
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::normal_form::normal_form;
 
-/// Beyond this many rates the Jacobian is left out. A chain of skewed axes takes 16500 operations for six rates and
-/// 29300 for eight, and as many lines: then a module is longer than it is worth.
-pub const MAX_RATES: usize = 8;
+/// Beyond this many rates expressions are not differentiated: a chain of skewed axes takes 16500 operations for six
+/// rates and 29300 for eight. Larger trees go by recursion ([`super::large_jacobian`]); larger mechanisms with loops, or
+/// with joints that are not made of turns and displacements, have no Jacobian.
+const MAX_RATES: usize = 8;
 
 /// The derivatives of f, row by row.
 #[derive(Debug)]
@@ -32,6 +33,10 @@ pub struct Jacobian {
     pub by_state_and_time: Chosen,
     pub by_inputs: Chosen,
 }
+
+/// ∂f/∂(parameters), row by row.
+#[derive(Debug)]
+pub struct ParameterJacobian(pub Chosen);
 
 /// The joint form, in terms of joint coordinates and rates.
 pub struct JointForm<'a> {
@@ -48,20 +53,17 @@ pub struct JointForm<'a> {
 }
 
 /// The columns of a matrix.
-type Columns = Vec<Vec<ExprId>>;
+pub type Columns = Vec<Vec<ExprId>>;
 
 impl Jacobian {
     /// `None` if there are too many rates, or if the third derivative of a table's curve would be needed.
     pub fn derive(system: &mut System, form: &JointForm<'_>) -> Option<Self> {
         let layout = &form.coordinates.layout;
-        if layout.n_rates > MAX_RATES {
-            return None;
-        }
         let n_inputs = system.model.inputs.len();
         let state =
             (0..layout.n_coordinates).map(Symbol::Coordinate).chain((0..layout.n_rates).map(Symbol::Rate));
         let variables: Vec<_> = state.chain([Symbol::Time]).chain((0..n_inputs).map(Symbol::Input)).collect();
-        let candidates = form.candidates(system, &variables);
+        let candidates = form.candidates(system, &variables)?;
         let rows = |graph: &mut Graph, of_rates: &Columns| form.rows(graph, &variables, of_rates);
         let graph = &mut system.graph;
         let (mut of_state, mut of_inputs) = (Vec::new(), Vec::new());
@@ -90,6 +92,21 @@ impl Jacobian {
     }
 }
 
+impl ParameterJacobian {
+    /// `None` in the same cases.
+    pub fn derive(system: &mut System, form: &JointForm<'_>) -> Option<Self> {
+        let variables: Vec<_> = (0..system.model.parameters.len()).map(Symbol::Parameter).collect();
+        let candidates = form.candidates(system, &variables)?;
+        let graph = &mut system.graph;
+        let rows = candidates
+            .into_iter()
+            .map(|(name, of_rates)| (name, form.rows(graph, &variables, &of_rates).concat()))
+            .collect();
+        let chosen = form.choose(graph, rows);
+        has_tables(graph, &chosen.roots).then_some(Self(chosen))
+    }
+}
+
 /// Whether the derivatives of tables that expressions take are there: there are two.
 pub fn has_tables(graph: &Graph, roots: &[ExprId]) -> bool {
     let is_third = |id| matches!(graph.node(id), Node::Symbol(Symbol::Table { order, .. }) if *order > 2);
@@ -107,8 +124,15 @@ impl JointForm<'_> {
         self.passes.cheapest(graph, candidates)
     }
 
-    /// ∂u̇ by each variable, in several ways.
-    fn candidates(&self, system: &mut System, variables: &[Symbol]) -> Vec<(String, Columns)> {
+    /// ∂u̇ by each variable, in several ways; `None` if the mechanism is too large.
+    fn candidates(&self, system: &mut System, variables: &[Symbol]) -> Option<Vec<(String, Columns)>> {
+        if self.coordinates.layout.n_rates > MAX_RATES {
+            return self.by_recursion(system, variables);
+        }
+        Some(self.by_differentiation(system, variables))
+    }
+
+    fn by_differentiation(&self, system: &mut System, variables: &[Symbol]) -> Vec<(String, Columns)> {
         let graph = &mut system.graph;
         let mut candidates = Vec::new();
         for (form, of) in self.accelerations.iter().zip(["u̇", "u̇ in the bodies' frames"]) {

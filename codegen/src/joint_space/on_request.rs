@@ -64,8 +64,7 @@ impl OnRequest {
         if !is_asked || !coordinates.closure.rows.is_empty() {
             return Self::default();
         }
-        let tree = AxisTree::new(system, coordinates, &coordinates.invariant);
-        let parts = Parts { coordinates, balance, tree, passes: FinalPasses::of(false) };
+        let parts = Parts::of(system, coordinates, balance);
         let mut found = Self::default();
         let n = coordinates.layout.n_rates;
         let given: Vec<_> = (0..n).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
@@ -90,7 +89,12 @@ impl OnRequest {
     }
 }
 
-impl Parts<'_> {
+impl<'c> Parts<'c> {
+    pub fn of(system: &mut System, coordinates: &'c Coordinates, balance: &'c JointDynamics) -> Self {
+        let tree = AxisTree::new(system, coordinates, &coordinates.invariant);
+        Self { coordinates, balance, tree, passes: FinalPasses::of(false) }
+    }
+
     /// τ at these accelerations.
     pub fn inverse(&self, system: &mut System, given: &[ExprId]) -> Chosen {
         let left = self.balance.left_over(system, given);
@@ -124,7 +128,7 @@ impl Parts<'_> {
     }
 
     /// The rates, those of joints that carry others first.
-    fn order(&self) -> Vec<usize> {
+    pub fn order(&self) -> Vec<usize> {
         self.tree.as_ref().map_or_else(|| self.balance.order().to_vec(), AxisTree::order)
     }
 

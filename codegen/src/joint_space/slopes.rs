@@ -22,6 +22,32 @@ const MAX_DIFFERENTIATED: usize = 4;
 /// n × n by positions and n × n by rates, row by row.
 type Slopes = [Vec<ExprId>; 2];
 
+/// The columns of a matrix.
+type Columns = Vec<Vec<ExprId>>;
+
+/// How a mechanism answers forces along its rates.
+pub(super) struct Response<'o> {
+    order: &'o [usize],
+    mass: Triangle,
+    /// `M⁻¹`, row by row.
+    inverse: Vec<ExprId>,
+    /// u̇ where no forces act but those of the model.
+    pub accelerations: Vec<ExprId>,
+}
+
+impl Response<'_> {
+    /// `M⁻¹` times some columns, in two ways.
+    pub fn of(&self, graph: &mut Graph, columns: Columns) -> [(&'static str, Columns); 2] {
+        let n = self.order.len();
+        let by_inverse = columns
+            .iter()
+            .map(|column| self.inverse.chunks(n).map(|row| graph.dot_slices(row, column)).collect())
+            .collect();
+        let by_factor = solved(graph, (&self.mass, self.order), columns);
+        [("M⁻¹", by_inverse), ("the factor of M", by_factor)]
+    }
+}
+
 impl Parts<'_> {
     /// ∂τ/∂(x, u) of given u̇.
     pub fn inverse_slopes(&self, system: &mut System, given: &[ExprId]) -> Chosen {
@@ -35,35 +61,33 @@ impl Parts<'_> {
     /// ∂u̇/∂(x, u, τ).
     pub fn forward_slopes(&self, system: &mut System, order: &[usize]) -> Chosen {
         let n = order.len();
-        let bias = self.inverse(system, &vec![Graph::ZERO; n]).roots;
+        let response = self.response(system, order);
+        let mut forms = Vec::new();
+        for (name, slopes) in self.slopes(system, &response.accelerations) {
+            let graph = &mut system.graph;
+            let columns = against(graph, columns_of(n, &slopes));
+            for (way, columns) in response.of(graph, columns) {
+                let [by_place, by_rate] = [0, n].map(|first| {
+                    let columns = &columns[first..first + n];
+                    (0..n).flat_map(|row| columns.iter().map(move |column| column[row])).collect::<Vec<_>>()
+                });
+                let all = beside(n, &[&by_place, &by_rate, &response.inverse]);
+                forms.push((format!("{name}, by {way}"), all));
+            }
+        }
+        self.passes.cheapest(&mut system.graph, forms)
+    }
+
+    /// How the mechanism answers forces.
+    pub fn response<'o>(&self, system: &mut System, order: &'o [usize]) -> Response<'o> {
+        let bias = self.inverse(system, &vec![Graph::ZERO; order.len()]).roots;
         let (_, mass) = self.triangles(system).pop().expect("there is one form at least");
         let mass = self.expanded(system, mass);
         let graph = &mut system.graph;
         let driving = bias.into_iter().map(|force| graph.neg(force)).collect();
         let accelerations = solved(graph, (&mass, order), vec![driving]).swap_remove(0);
         let inverse = inverse_of(graph, &mass, order);
-        let mut forms = Vec::new();
-        for (name, slopes) in self.slopes(system, &accelerations) {
-            let graph = &mut system.graph;
-            let columns: Vec<Vec<_>> = slopes
-                .iter()
-                .flat_map(|slopes| (0..n).map(move |column| (0..n).map(move |row| slopes[n * row + column])))
-                .map(|column| column.map(|entry| graph.neg(entry)).collect())
-                .collect();
-            let by_inverse: Vec<Vec<_>> = columns
-                .iter()
-                .map(|column| inverse.chunks(n).map(|row| graph.dot_slices(row, column)).collect())
-                .collect();
-            let by_factor = solved(graph, (&mass, order), columns);
-            for (way, columns) in [("M⁻¹", by_inverse), ("the factor of M", by_factor)] {
-                let [by_place, by_rate] = [0, n].map(|first| {
-                    let columns = &columns[first..first + n];
-                    (0..n).flat_map(|row| columns.iter().map(move |column| column[row])).collect::<Vec<_>>()
-                });
-                forms.push((format!("{name}, by {way}"), beside(n, &[&by_place, &by_rate, &inverse])));
-            }
-        }
-        self.passes.cheapest(&mut system.graph, forms)
+        Response { order, mass, inverse, accelerations }
     }
 
     /// In several ways, expanded.
@@ -92,7 +116,7 @@ impl Parts<'_> {
     }
 
     /// Of what inertia and gravity take by recursion; less those of what else acts.
-    fn by_recursion(&self, system: &mut System, tree: &AxisTree, given: &[ExprId]) -> Slopes {
+    pub fn by_recursion(&self, system: &mut System, tree: &AxisTree, given: &[ExprId]) -> Slopes {
         let n = given.len();
         let motions = tree.motions(system, given);
         let slopes = tree.slopes(system, &motions);
@@ -158,6 +182,17 @@ impl Parts<'_> {
     }
 }
 
+/// The columns of n × n matrices that are given row by row.
+pub(super) fn columns_of(n: usize, matrices: &[Vec<ExprId>]) -> Columns {
+    let column = |matrix: &[ExprId], column: usize| (0..n).map(|row| matrix[n * row + column]).collect();
+    matrices.iter().flat_map(|matrix| (0..n).map(|k| column(matrix, k))).collect()
+}
+
+/// Minus some columns.
+pub(super) fn against(graph: &mut Graph, columns: Columns) -> Columns {
+    columns.into_iter().map(|column| column.into_iter().map(|entry| graph.neg(entry)).collect()).collect()
+}
+
 /// Matrices of n rows beside each other, row by row.
 fn beside(n: usize, matrices: &[&[ExprId]]) -> Vec<ExprId> {
     let row = |row: usize| matrices.iter().flat_map(move |matrix| &matrix[n * row..n * (row + 1)]).copied();
@@ -165,11 +200,7 @@ fn beside(n: usize, matrices: &[&[ExprId]]) -> Vec<ExprId> {
 }
 
 /// `M⁻¹` times some columns, eliminated from the last rate in the order to the first.
-fn solved(
-    graph: &mut Graph,
-    (mass, order): (&Triangle, &[usize]),
-    columns: Vec<Vec<ExprId>>,
-) -> Vec<Vec<ExprId>> {
+fn solved(graph: &mut Graph, (mass, order): (&Triangle, &[usize]), columns: Columns) -> Columns {
     let mut elimination = Elimination::of_several(mass.clone(), columns);
     order.iter().rev().for_each(|&rate| elimination.pivot(graph, rate));
     elimination.solutions(graph)

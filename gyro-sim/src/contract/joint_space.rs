@@ -56,9 +56,10 @@ pub trait JointSpace: Mechanism {
 
 /// The derivatives of the joint form `ẋ = f(t, x)`.
 ///
-/// Generated mechanisms of up to eight rates can have them, unless a third derivative of a table would be needed. They
-/// are the derivatives of the emitted functions as they stand, in directions too in which the state cannot change (of
-/// Euler parameters, across their unit sphere).
+/// Generated trees can have them, and mechanisms with loops, or with joints that are not made of turns and displacements
+/// (screws, rods, points on a line), of up to eight rates; not where a third derivative of a table would be needed. They
+/// are the derivatives of the emitted functions as they stand, at unit Euler parameters in directions too in which the
+/// state cannot change (across their unit sphere).
 pub trait JointJacobian: JointSpace {
     /// ∂f/∂x, n × n for a joint state of n numbers, row by row.
     type Jacobian: Storage<Self::Scalar>;
@@ -77,6 +78,25 @@ pub trait JointJacobian: JointSpace {
     );
     /// Writes ∂f/∂(inputs), row by row.
     fn joint_input_jacobian(&self, t: Self::Scalar, x: &Self::Joints, out: &mut Self::InputJacobian);
+}
+
+/// The derivatives of the joint form by parameters: for sensitivities, identification and design.
+///
+/// f is [`JointSpace::joint_derivative`]: `ẋ = f(t, x)`, of which u̇ depends on parameters, and the power of the forces
+/// whose work the state counts. So the sensitivities `S = ∂x/∂(parameters)` of a motion follow from `Ṡ = ∂f/∂x S +
+/// ∂f/∂(parameters)`. An element has the unit of f's by that of the parameter. Parameters of the geometry change what a
+/// joint state is, not the joint state: of a tree they leave it consistent; loops are to be closed anew.
+///
+/// Implemented where it is asked for (`functions = ["parameter_jacobian"]` in the model file, or `--functions`) and
+/// where [`JointJacobian`] can be.
+pub trait ParameterJacobian: JointSpace {
+    /// ∂f/∂(parameters), n × k for a joint state of n numbers and k parameters, row by row.
+    type ParameterJacobian: Storage<Self::Scalar>;
+
+    /// A buffer, zeroed.
+    fn parameter_buffer(&self) -> Self::ParameterJacobian;
+    /// Writes ∂f/∂(parameters), row by row, parameters in the order of the type's `PARAMETERS`.
+    fn joint_parameter_jacobian(&self, t: Self::Scalar, x: &Self::Joints, out: &mut Self::ParameterJacobian);
 }
 
 /// What the functions of [`JointJacobian`] write to.

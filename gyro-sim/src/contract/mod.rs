@@ -15,7 +15,9 @@ mod robot;
 
 pub use description::{Coordinate, Description, JointInfo, OutputInfo, Owner, RowInfo};
 pub use dynamics::{CorrectedDynamics, CorrectedSolution, Dynamics, Projection};
-pub use joint_space::{JacobianBuffers, JointBuffers, JointJacobian, JointLayout, JointPlace, JointSpace};
+pub use joint_space::{
+    JacobianBuffers, JointBuffers, JointJacobian, JointLayout, JointPlace, JointSpace, ParameterJacobian,
+};
 pub use kinematics::{Kinematics, Terms};
 pub use mechanism::{Buffers, Energy, Mechanism, set_turn_references};
 pub use observed::{FrameBuffers, Frames, JointOutputs, OutputDerivatives, OutputSlopes};

@@ -4,7 +4,9 @@ use super::maximal::start;
 use crate::engine::Engine;
 use crate::mechanism::InProcess;
 use gyro_codegen::Kernel;
-use gyro_sim::{JacobianBuffers, JointBuffers, JointJacobian, JointLayout, JointSpace, Scalar};
+use gyro_sim::{
+    JacobianBuffers, JointBuffers, JointJacobian, JointLayout, JointSpace, ParameterJacobian, Scalar,
+};
 
 impl<T: Scalar, E: Engine<T>> InProcess<T, E> {
     /// Where the work stands in a joint state, and where in a maximal one, if it is there.
@@ -97,5 +99,17 @@ impl<T: Scalar, E: Engine<T>> JointJacobian for InProcess<T, E> {
 
     fn joint_input_jacobian(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
         self.fill(Kernel::JointInputJacobian, t, x, out);
+    }
+}
+
+impl<T: Scalar, E: Engine<T>> ParameterJacobian for InProcess<T, E> {
+    type ParameterJacobian = Vec<T>;
+
+    fn parameter_buffer(&self) -> Vec<T> {
+        self.zeros(self.n_results(Kernel::JointParameterJacobian))
+    }
+
+    fn joint_parameter_jacobian(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
+        self.fill(Kernel::JointParameterJacobian, t, x, out);
     }
 }

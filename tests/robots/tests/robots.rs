@@ -6,9 +6,7 @@ use gyro_assembled::Dense;
 use gyro_model::{Model, Number, to_f64};
 use gyro_robots::legged::Legged;
 use gyro_robots::manipulator::Manipulator;
-use gyro_sim::{
-    DynamicsDerivatives, InverseDynamics, JointPlace, JointSpace, MassMatrix, Mechanism, Regressor,
-};
+use gyro_sim::{InverseDynamics, JointPlace, JointSpace, MassMatrix, Mechanism, Regressor};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -343,53 +341,6 @@ fn motors_with_these_forces_bring_about_the_accelerations() {
     }
     println!("manipulator: {worst:.1e}");
     assert!(worst <= ROUNDING, "{worst:e}");
-}
-
-/// Derivatives against the five-point formula, free bodies and ball joints turned by finite rotations.
-fn check_derivatives<M: DynamicsDerivatives<Scalar = f64> + MassMatrix>(name: &str, mechanism: &M) {
-    let (mut random, mut worst) = (Random::new(6), [0.0_f64; 3]);
-    let (n_x, n) = (mechanism.joint_layout().n_coordinates(), mechanism.joint_layout().n_rates());
-    for _ in 0..STATES {
-        let (t, x, given) = (random.signed(), state(mechanism, &mut random), rates(mechanism, &mut random));
-        let changed = |column: usize, h: f64| {
-            if column < n {
-                let by: Vec<f64> = (0..n).map(|rate| if rate == column { h } else { 0.0 }).collect();
-                return displaced(mechanism, &x, &by);
-            }
-            let mut faster = x.clone();
-            faster.as_mut()[n_x + column - n] += h;
-            faster
-        };
-        let accelerations = |x: &M::Joints| {
-            let mut out = mechanism.joint_buffers().rates;
-            mechanism.joint_accelerations(t, x, &mut out);
-            out.as_ref().to_vec()
-        };
-        let (mut of_forces, mut of_accelerations) = (mechanism.inverse_buffer(), mechanism.forward_buffer());
-        mechanism.inverse_derivatives(t, &x, &given, &mut of_forces);
-        mechanism.forward_derivatives(t, &x, &mut of_accelerations);
-        let of_forces = DMatrix::from_row_slice(n, 2 * n, of_forces.as_ref());
-        let of_accelerations = DMatrix::from_row_slice(n, 3 * n, of_accelerations.as_ref());
-        let columns = |f: &dyn Fn(&M::Joints) -> Vec<f64>| {
-            let columns = (0..2 * n).map(|column| slope(|h| f(&changed(column, h))));
-            columns.collect::<Vec<_>>().concat()
-        };
-        let expected = columns(&|x| inverse(mechanism, t, x, &given));
-        worst[0] = worst[0].max(difference(of_forces.as_slice(), &expected));
-        let expected = columns(&accelerations);
-        worst[1] =
-            worst[1].max(difference(of_accelerations.columns(0, 2 * n).into_owned().as_slice(), &expected));
-        let product = masses(mechanism, t, &x) * of_accelerations.columns(2 * n, n);
-        worst[2] = worst[2].max(difference(product.as_slice(), DMatrix::identity(n, n).as_slice()));
-    }
-    println!("{name}: {worst:?}");
-    assert!(worst[0] <= DIFFERENCES && worst[1] <= DIFFERENCES && worst[2] <= ROUNDING, "{name}: {worst:?}");
-}
-
-#[test]
-fn derivatives_are_limits_of_differences_with_finite_rotations() {
-    check_derivatives("legged", &Legged::default());
-    check_derivatives("manipulator", &Manipulator::default());
 }
 
 fn regressor<M: Regressor<Scalar = f64>>(

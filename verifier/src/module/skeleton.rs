@@ -45,7 +45,7 @@ pub struct Corrected {
 }
 
 /// The traits that a module may leave out, but for joint coordinates, which their layout shows.
-const TRAITS: [&str; 14] = [
+const TRAITS: [&str; 15] = [
     "Partition",
     "Kinematics",
     "Dynamics",
@@ -53,6 +53,7 @@ const TRAITS: [&str; 14] = [
     "CorrectedDynamics",
     "CorrectedSolution",
     "JointJacobian",
+    "ParameterJacobian",
     "JointOutputs",
     "OutputDerivatives",
     "Frames",
@@ -112,6 +113,7 @@ pub fn text(
         of_joints(joint_space),
         of("CorrectedSolution", of_joints(corrected_solution)),
         of("JointJacobian", of_joints(joint_jacobian)),
+        of("ParameterJacobian", of_joints(parameter_jacobian)),
         of("JointOutputs", joint_outputs(type_name)),
         of("OutputDerivatives", of_joints(output_derivatives)),
         of("Frames", of_joints(frames)),
@@ -279,6 +281,21 @@ fn joint_jacobian(model: &Model, name: &str, joints: &JointLayout) -> String {
             "JacobianBuffers",
             &[("jacobian", &by_state.to_string()), ("input_jacobian", &by_inputs.to_string())],
         ),
+    )
+}
+
+fn parameter_jacobian(model: &Model, name: &str, joints: &JointLayout) -> String {
+    let n = joints.n_state() * model.parameters.len();
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::ParameterJacobian for {name}<T> {{
+            type ParameterJacobian = [T; {n}];
+            fn parameter_buffer(&self) -> Self::ParameterJacobian {{ [T::constant(0.0); {n}] }}
+            fn joint_parameter_jacobian(
+                &self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::ParameterJacobian,
+            ) {{
+                HOLE_joint_parameter_jacobian
+            }}
+        }}"
     )
 }
 

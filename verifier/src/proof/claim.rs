@@ -80,6 +80,8 @@ pub enum Claim {
     JointJacobian,
     /// `joint_input_jacobian` is ∂f/∂(inputs).
     JointInputJacobian,
+    /// `joint_parameter_jacobian` is ∂f/∂(parameters).
+    JointParameterJacobian,
     /// `joint_outputs` gives the outputs of the model file at the maximal state of a joint state.
     JointOutputs,
     /// `outputs_by_state`, `outputs_by_accelerations`, `outputs_by_inputs` and `outputs_by_parameters` are its
@@ -108,7 +110,7 @@ pub enum Claim {
 }
 
 /// All claims, in the order in which they are proved.
-const ALL: [Claim; 43] = {
+const ALL: [Claim; 44] = {
     use Claim::*;
     [
         Phi,
@@ -142,6 +144,7 @@ const ALL: [Claim; 43] = {
         CorrectedSolution,
         JointJacobian,
         JointInputJacobian,
+        JointParameterJacobian,
         JointOutputs,
         OutputDerivatives,
         FrameJacobians,
@@ -158,10 +161,11 @@ const ALL: [Claim; 43] = {
 };
 
 /// Claims about functions that may have no results.
-const MAY_GIVE_NOTHING: [Claim; 13] = {
+const MAY_GIVE_NOTHING: [Claim; 14] = {
     use Claim::*;
     [
         JointInputJacobian,
+        JointParameterJacobian,
         JointOutputs,
         OutputDerivatives,
         FrameJacobians,
@@ -224,6 +228,7 @@ impl Claim {
             Self::CloseVelocities => &["close_velocities"],
             Self::JointJacobian => &["joint_jacobian"],
             Self::JointInputJacobian => &["joint_input_jacobian"],
+            Self::JointParameterJacobian => &["joint_parameter_jacobian"],
             Self::JointOutputs => &["joint_outputs"],
             Self::OutputDerivatives => &[
                 "outputs_by_state",
@@ -302,6 +307,7 @@ impl Claim {
             Self::CloseVelocities => closure::close_velocities(case),
             Self::JointJacobian => joints::jacobian(case),
             Self::JointInputJacobian => joints::input_jacobian(case),
+            Self::JointParameterJacobian => joints::parameter_jacobian(case),
             Self::JointOutputs => observed::outputs(case),
             Self::OutputDerivatives => observed::output_derivatives(case),
             Self::FrameJacobians => observed::frame_jacobians(case),

@@ -353,6 +353,12 @@ pub fn input_jacobian<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(differences(&case.run("joint_input_jacobian", &case.point), &by_inputs))
 }
 
+/// ∂f/∂(parameters) row by row.
+pub fn parameter_jacobian<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let by_parameters = derivatives(case, (0..case.model.parameters.len()).map(Source::Parameter))?;
+    Some(differences(&case.run("joint_parameter_jacobian", &case.point), &by_parameters))
+}
+
 /// The matrix of the derivatives of `joint_derivative`, with the u̇ that it has computed first, by rows.
 fn derivatives<'a>(case: &Case<'a>, by: impl Iterator<Item = Source>) -> Option<Vec<Term<'a>>> {
     let one = Term::one(case.point.context);

@@ -188,6 +188,33 @@ impl ModuleWriter<'_> {
         })
     }
 
+    /// Nothing unless it is asked for and the mechanism is not too large.
+    pub fn parameter_jacobian(&self) -> Option<TokenStream> {
+        let space = self.equations.joint_space.as_ref()?;
+        let n = index(space.parameter_jacobian.as_ref()?.0.roots.len());
+        let name = ident(self.type_name);
+        let function = if self.kernels.roots(Kernel::JointParameterJacobian).is_empty() {
+            quote! {
+                fn joint_parameter_jacobian(&self, _t: T, _x: &Self::Joints, _out: &mut Self::ParameterJacobian) {}
+            }
+        } else {
+            let out = quote! { out: &mut Self::ParameterJacobian };
+            let write = |values: &[Value]| filled("out", values);
+            self.of_joints(Kernel::JointParameterJacobian, "Writes ∂f/∂(parameters)", &out, write)
+        };
+        Some(quote! {
+            impl<T: gyro_sim::Scalar> gyro_sim::ParameterJacobian for #name<T> {
+                type ParameterJacobian = [T; #n];
+
+                fn parameter_buffer(&self) -> Self::ParameterJacobian {
+                    [T::constant(0.0); #n]
+                }
+
+                #function
+            }
+        })
+    }
+
     /// A function of time and joint state.
     pub fn of_joints(
         &self,

@@ -69,7 +69,7 @@ impl ModuleWriter<'_> {
         let (partition, kinematics, dynamics) = (self.partition(), self.kinematics(), self.dynamics());
         let (projection, joint_space) = (self.projection(), self.joint_space());
         let (corrected_dynamics, corrected_solution) = (self.corrected_dynamics(), self.corrected_solution());
-        let joint_jacobian = self.joint_jacobian();
+        let (joint_jacobian, parameter_jacobian) = (self.joint_jacobian(), self.parameter_jacobian());
         let (joint_outputs, output_derivatives, frames) =
             (self.joint_outputs(), self.output_derivatives(), self.frames());
         let on_request = self.on_request();
@@ -86,6 +86,7 @@ impl ModuleWriter<'_> {
             #joint_space
             #corrected_solution
             #joint_jacobian
+            #parameter_jacobian
             #joint_outputs
             #output_derivatives
             #frames

@@ -37,6 +37,7 @@ impl Claim {
             Self::CloseVelocities => "loops stay closed; rates at which they do are kept",
             Self::JointJacobian => "`joint_derivative` by dual numbers, of x and of t",
             Self::JointInputJacobian => "`joint_derivative` by dual numbers, of the inputs",
+            Self::JointParameterJacobian => "`joint_derivative` by dual numbers, of the parameters",
             Self::JointOutputs => "outputs at the state of (x, u), at the proved v̇ and λ",
             Self::OutputDerivatives => "`joint_outputs` by dual numbers, at any u̇",
             Self::FrameJacobians => "velocities at the state of (x, u) by the rates",
@@ -73,7 +74,7 @@ impl Claim {
             Self::LoopClosure | Self::ClosureDistances | Self::ClosePositions | Self::CloseVelocities => {
                 "Newton's step for closed loops"
             }
-            Self::JointJacobian | Self::JointInputJacobian => {
+            Self::JointJacobian | Self::JointInputJacobian | Self::JointParameterJacobian => {
                 "the derivatives of `joint_derivative` by dual numbers"
             }
             Self::InverseDerivatives | Self::ForwardDerivatives => {
