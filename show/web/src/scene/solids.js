@@ -1,7 +1,7 @@
 // From parts to meshes.
 import {
-  BoxGeometry, BufferGeometry, Color, ConeGeometry, CylinderGeometry, Float32BufferAttribute, Group, Matrix4, Mesh,
-  MeshStandardMaterial, PlaneGeometry, Quaternion, SphereGeometry, TorusGeometry, TubeGeometry, Curve, Vector3,
+  BoxGeometry, BufferGeometry, Color, ConeGeometry, CylinderGeometry, Float32BufferAttribute, Group, LatheGeometry, Matrix4,
+  Mesh, MeshStandardMaterial, PlaneGeometry, Quaternion, SphereGeometry, TorusGeometry, TubeGeometry, Curve, Vector2, Vector3,
 } from 'three';
 import { toCreasedNormals } from 'three/addons/utils/BufferGeometryUtils.js';
 import { across as anyAcross, add, cross, dot, middle } from '../vector.js';
@@ -157,6 +157,18 @@ const MAKERS = {
     group.add(mesh(new CylinderGeometry(1.6 * part.thick, 2.2 * part.thick, part.height, 24), materials.fixed, [0, -part.height / 2, 0]));
     group.add(mesh(new CylinderGeometry(part.wide, 1.08 * part.wide, 0.16 * part.wide, 48), materials.fixed, [0, -part.height, 0]));
     return group;
+  },
+  // What rolls on the ground under a body that turns about its origin: a cap of the sphere about it.
+  rocker: ({ down, depth, wide }, materials) => {
+    const round = Math.hypot(depth, wide);
+    const outline = [[0, -depth], [wide, -depth]].map(([r, y]) => new Vector2(r, y));
+    for (let k = 1; k <= 12; k++) {
+      const angle = Math.asin(wide / round) * (1 - k / 12);
+      outline.push(new Vector2(round * Math.sin(angle), -round * Math.cos(angle)));
+    }
+    const made = mesh(new LatheGeometry(outline.reverse(), 48), materials.dark);
+    made.quaternion.copy(toAxis(new Vector3(0, -1, 0), down));
+    return made;
   },
   bracket,
   cylinder,
