@@ -264,7 +264,7 @@ export function forms(scene) {
         }
         const foot = isUpright ? add(point, axis, Math.sign(dot(down, axis)) * wide) : add(point, back, wide);
         parts.push({ type: 'foot', at: foot, height: 0.35 * outer, wide: 0.5 * outer, thick });
-        if (rocks(b)) parts.push({ type: 'rocker', down, depth: dot(foot, down) + 0.35 * outer, wide: 1.1 * outer });
+        if (rocks(b)) parts.push({ type: 'rocker', at: add(foot, down, 0.35 * outer), wide: 0.75 * outer });
       } else if (isTop(other, held[other].map((end) => end.point))) {
         const wide = solids[other].radius;
         parts.push({ type: 'foot', at: point, height: 0.8 * wide, wide: 0.5 * wide, thick: 0.07 * wide });

@@ -158,17 +158,17 @@ const MAKERS = {
     group.add(mesh(new CylinderGeometry(part.wide, 1.08 * part.wide, 0.16 * part.wide, 48), materials.fixed, [0, -part.height, 0]));
     return group;
   },
-  // What rolls on the ground under a body that turns about its origin: a cap of the sphere about it.
-  rocker: ({ down, depth, wide }, materials) => {
-    const round = Math.hypot(depth, wide);
-    const outline = [[0, -depth], [wide, -depth]].map(([r, y]) => new Vector2(r, y));
-    for (let k = 1; k <= 12; k++) {
-      const angle = Math.asin(wide / round) * (1 - k / 12);
-      outline.push(new Vector2(round * Math.sin(angle), -round * Math.cos(angle)));
-    }
-    const made = mesh(new LatheGeometry(outline.reverse(), 48), materials.dark);
-    made.quaternion.copy(toAxis(new Vector3(0, -1, 0), down));
-    return made;
+  // A disc on half an ellipsoid, on which a body rocks.
+  rocker: ({ at, wide }, materials, down) => {
+    const outline = Array.from({ length: 16 }, (_, k) => {
+      const angle = (k * Math.PI) / 30;
+      return new Vector2(wide * Math.sin(angle), -0.55 * wide * Math.cos(angle));
+    });
+    const group = new Group();
+    group.position.copy(vector(at));
+    group.quaternion.copy(toAxis(new Vector3(0, -1, 0), down));
+    group.add(mesh(new LatheGeometry(outline, 48), materials.dark), mesh(new CylinderGeometry(wide, wide, 0.06 * wide, 48), materials.fixed));
+    return group;
   },
   bracket,
   cylinder,
