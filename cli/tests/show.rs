@@ -273,7 +273,10 @@ fn the_gallery_has_all_model_files() {
         assert!(gallery.contains(&format!("](../models/{name}.toml)")), "{name}: docs/show.md");
     }
     for name in names("docs/images/show", ".webp") {
-        assert!(gallery.contains(&format!("](images/show/{name}.webp)")), "{name}: nothing shows its picture");
+        assert!(
+            gallery.contains(&format!("](images/show/{name}.webp)")),
+            "{name}: nothing shows its picture"
+        );
     }
     let pictures = names("docs/images/show", ".webp").len();
     assert_eq!(gallery.matches("](images/show/").count(), pictures, "a picture of the gallery is not there");
