@@ -12,6 +12,7 @@ mod columns;
 mod compare;
 mod contacts;
 mod controllers;
+mod eigenvalues;
 mod events;
 mod export;
 pub mod failure;

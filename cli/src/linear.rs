@@ -6,6 +6,7 @@
 //! gyroscope that is kicked departs from its spin. The response follows from the matrix exponential of `[A f₀; 0 0]`.
 //! Nothing here knows what the mechanism is.
 
+use crate::eigenvalues;
 use gyro_assembled::Careful;
 use gyro_model::{
     Joint, JointKind, JointStartSpec, Model, Number, Quaternion, Rational, Support, Tree, Vector,
@@ -118,7 +119,7 @@ impl Linear {
     }
 
     fn refuse_growth(&self, length: f64) -> Result<(), String> {
-        let growth = self.a.complex_eigenvalues().iter().map(|l| l.re).fold(0.0, f64::max);
+        let growth = eigenvalues::of(&self.a).iter().map(|l| l.re).fold(0.0, f64::max);
         if growth * length > 1.0 {
             return Err(format!("departures from the start grow by e in {:.2e} s", 1.0 / growth));
         }

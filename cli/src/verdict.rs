@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::quicker::Took;
 use crate::scene::Scene;
 use crate::words::{count, number, table};
-use crate::{columns, remarks};
+use crate::{columns, eigenvalues, remarks};
 use gyro_model::{Model, RowOwner};
 use gyro_runner::motion::Linear;
 use gyro_runner::{
@@ -136,7 +136,7 @@ pub(crate) fn fastest(linear: &Linear) -> f64 {
 pub(crate) fn eigenvalues(linear: &Linear) -> Vec<[f64; 2]> {
     let n = linear.state.len();
     let matrix = DMatrix::from_row_slice(n, n, &linear.by_state);
-    let mut values: Vec<[f64; 2]> = matrix.complex_eigenvalues().iter().map(|v| [v.re, v.im]).collect();
+    let mut values: Vec<[f64; 2]> = eigenvalues::of(&matrix).iter().map(|v| [v.re, v.im]).collect();
     values.sort_by(|a, b| b[0].hypot(b[1]).total_cmp(&a[0].hypot(a[1])).then(b[1].total_cmp(&a[1])));
     values
 }

@@ -256,3 +256,28 @@ fn a_robot_with_meshes_looks_like_them() {
     }
     assert!(!root.join("other.html").exists());
 }
+
+/// The names of the files of a folder that end so.
+fn names(folder: &str, ending: &str) -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
+    let files = fs::read_dir(&folder).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
+    files.filter_map(|name| name.strip_suffix(ending).map(str::to_owned)).collect()
+}
+
+#[test]
+fn the_gallery_has_all_model_files() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/show.md");
+    let page = fs::read_to_string(page).unwrap();
+    let (_, gallery) = page.split_once("## Gallery").unwrap();
+    for name in names("models", ".toml") {
+        assert!(gallery.contains(&format!("](../models/{name}.toml)")), "{name}: docs/show.md");
+    }
+    for name in names("docs/images/show", ".webp") {
+        assert!(
+            gallery.contains(&format!("](images/show/{name}.webp)")),
+            "{name}: nothing shows its picture"
+        );
+    }
+    let pictures = names("docs/images/show", ".webp").len();
+    assert_eq!(gallery.matches("](images/show/").count(), pictures, "a picture of the gallery is not there");
+}

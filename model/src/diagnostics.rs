@@ -63,7 +63,9 @@ impl Diagnostics {
         });
         mistakes.dedup();
         let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
-        Self { file_name: file_name.to_owned(), text: text.to_owned(), mistakes, starts }
+        // As many bytes, so that places stay where they are.
+        let text = text.replace(|c: char| c.is_ascii_control() && !c.is_ascii_whitespace(), "?");
+        Self { file_name: file_name.to_owned(), text, mistakes, starts }
     }
 
     /// The mistakes in the order of the model file.
@@ -203,12 +205,17 @@ fn boundary(text: &str, at: usize) -> usize {
     (0..=at.min(text.len())).rev().find(|&k| text.is_char_boundary(k)).unwrap_or(0)
 }
 
-/// A message, shortened if it is too long.
+/// A message, shortened if it is too long. A terminal would obey control characters of a name.
 fn cut(message: &str) -> String {
-    match message.char_indices().nth(LONGEST_MESSAGE) {
-        None => message.to_owned(),
-        Some((end, _)) => format!("{}...", &message[..end]),
-    }
+    let (message, dots) = match message.char_indices().nth(LONGEST_MESSAGE) {
+        None => (message, ""),
+        Some((end, _)) => (&message[..end], "..."),
+    };
+    let shown = message.chars().map(|c| match c.is_control() && c != '\n' {
+        true => c.escape_default().to_string(),
+        false => c.to_string(),
+    });
+    shown.chain([dots.to_owned()]).collect()
 }
 
 impl fmt::Display for Diagnostics {
@@ -236,6 +243,15 @@ mod tests {
         assert!(!shown(30).contains("more") && shown(30).contains("p.toml:30:1"));
         assert!(shown(31).ends_with("and 1 more mistake\n"));
         assert!(shown(99).ends_with("and 69 more mistakes\n") && !shown(99).contains("p.toml:31:1"));
+    }
+
+    #[test]
+    fn control_characters_do_not_reach_the_terminal() {
+        let mut red = mistake(9..10);
+        red.message = "`\u{1b}[31m\u{7}` is no name".to_owned();
+        let shown = Diagnostics::new("p.toml", "a\tb\r\nc \u{1b}[31m\0\n", vec![red]).render();
+        assert!(!shown.contains(['\u{1b}', '\u{7}', '\0']), "{shown:?}");
+        assert!(shown.contains("`\\u{1b}[31m\\u{7}` is no name") && shown.contains("c ?[31m?"), "{shown:?}");
     }
 
     #[test]

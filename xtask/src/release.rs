@@ -32,16 +32,13 @@ pub(crate) fn release(args: &ReleaseArgs) -> Result<(), Failure> {
         let heading = format!("## {version}");
         holds(changes.contains(&heading), || format!("CHANGELOG.md has no heading `{heading}`"))?;
     }
-    let mut publish = Command::new(cargo());
-    publish.args(["publish", "--dry-run", "--workspace", "--locked"]).current_dir(files::root());
-    if args.allow_dirty {
-        publish.arg("--allow-dirty");
-    }
-    if args.no_build {
-        publish.arg("--no-verify");
-    }
-    let status = publish.status().map_err(|e| Failure::Run(format!("cargo cannot be started: {e}")))?;
-    holds(status.success(), || "cargo would not publish".to_owned())?;
+    let dirty = args.allow_dirty.then_some("--allow-dirty");
+    let unbuilt = args.no_build.then_some("--no-verify");
+    let publish = ["publish", "--dry-run", "--workspace", "--locked"];
+    run(publish.into_iter().chain(dirty).chain(unbuilt), "cargo would not publish")?;
+    // What `publish` packs it does not keep.
+    let package = ["package", "--quiet", "--package", "gyro-sim", "--no-verify", "--locked"];
+    run(package.into_iter().chain(dirty), "gyro-sim cannot be packed")?;
     let target = env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into());
     let packed = files::root().join(target).join("package").join(format!("gyro-sim-{version}.crate"));
     let bytes = size(&packed)?;
@@ -60,6 +57,13 @@ pub(crate) fn release(args: &ReleaseArgs) -> Result<(), Failure> {
 
 fn holds(is_well: bool, words: impl FnOnce() -> String) -> Result<(), Failure> {
     if is_well { Ok(()) } else { Err(Failure::Run(words())) }
+}
+
+/// Runs cargo in the folder of the project.
+fn run<'a>(arguments: impl Iterator<Item = &'a str>, otherwise: &str) -> Result<(), Failure> {
+    let status = Command::new(cargo()).args(arguments).current_dir(files::root()).status();
+    let status = status.map_err(|e| Failure::Run(format!("cargo cannot be started: {e}")))?;
+    holds(status.success(), || otherwise.to_owned())
 }
 
 fn git() -> Command {

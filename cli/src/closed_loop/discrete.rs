@@ -4,6 +4,7 @@
 //! follows the exponential of `[A B; 0 0]`; at an instant the rest is set by linear maps. Their product is the map over
 //! the period.
 
+use crate::eigenvalues;
 use gyro_runner::{Controller, Wiring};
 use nalgebra::{Complex, DMatrix};
 use std::collections::HashMap;
@@ -90,7 +91,7 @@ impl<'a> Discrete<'a> {
             kept = left;
         }
         let reduced = DMatrix::from_fn(kept.len(), kept.len(), |i, j| map[(kept[i], kept[j])]);
-        let mut poles: Vec<_> = reduced.complex_eigenvalues().iter().copied().collect();
+        let mut poles = eigenvalues::of(&reduced);
         poles.sort_by(|a, b| b.norm().total_cmp(&a.norm()).then(b.im.total_cmp(&a.im)));
         poles
     }

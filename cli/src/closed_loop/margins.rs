@@ -2,6 +2,7 @@
 //! loop has its poles at L = −1.
 
 use super::discrete::Opened;
+use crate::eigenvalues;
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::PI;
 
@@ -73,7 +74,7 @@ fn angles(Opened { f, g, h }: &Opened) -> Vec<f64> {
     };
     let mut angles: Vec<f64> = ratios(LOOKS, 1e-6, PI).collect();
     let closed = f + g * h;
-    for pole in f.complex_eigenvalues().iter().chain(closed.complex_eigenvalues().iter()) {
+    for pole in eigenvalues::of(f).iter().chain(&eigenvalues::of(&closed)) {
         let (centre, width) = (pole.arg().abs(), (1.0 - pole.norm()).abs().max(1e-9));
         let around = ratios(80, width * 1e-2, PI.max(width)).flat_map(|away| [centre - away, centre + away]);
         angles.extend(around.chain([centre]).filter(|angle| *angle > 0.0 && *angle < PI));

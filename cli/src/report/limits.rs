@@ -160,6 +160,9 @@ impl Spectrum {
             }
         }
         let matrix = |a: DMatrix<f64>| {
+            if a.is_empty() {
+                return Ok(Vec::new());
+            }
             let schur = Schur::try_new(a, f64::EPSILON, 100_000).ok_or("the eigenvalues do not converge")?;
             Ok::<_, String>(schur.complex_eigenvalues().iter().copied().collect())
         };

@@ -207,3 +207,13 @@ fn a_budget_ends_fixed_steps() {
     assert_eq!(output.status.code(), Some(1));
     assert!(simulate(&folder, &[&run[..], &["--budget", "2000"]].concat()).status.success());
 }
+
+#[test]
+fn what_drivers_determine_is_judged_and_linearised() {
+    let folder = Folder::new("driven");
+    let cam = model("../tests/models/cam.toml");
+    let judged = json(&folder, &[&cam, "--engine", "jit", "--t-end", "0.1", "--verify"]);
+    assert_eq!(judged["verdict"]["grade"], "good", "{}", judged["verdict"]);
+    let linear = json(&folder, &[&cam, "--engine", "jit", "--linearize", "0"]);
+    assert_eq!(linear["linearization"]["eigenvalues"], Value::Array(Vec::new()), "{linear}");
+}

@@ -41,10 +41,16 @@ impl<T: Scalar, E: Engine<T>> JointSpace for InProcess<T, E> {
 
     fn joint_derivative(&self, t: T, x: &Vec<T>, dx: &mut Vec<T>) {
         let (first, n) = (self.shared.joint.n_coordinates, self.shared.joint.n_rates);
+        let in_place = first..first + n;
+        if !self.shared.reads_given[Kernel::JointDerivative as usize] {
+            // Each writes where the other one does not.
+            self.fill(Kernel::JointAccelerations, t, x, &mut dx[in_place]);
+            return self.fill(Kernel::JointDerivative, t, x, dx);
+        }
         self.with_given(n, |rates| {
             self.fill(Kernel::JointAccelerations, t, x, rates);
             self.compute(Kernel::JointDerivative, t, (x, rates), dx);
-            dx[first..first + n].copy_from_slice(rates);
+            dx[in_place].copy_from_slice(rates);
         });
     }
 

@@ -129,7 +129,7 @@ export function forms(scene) {
     seen.add(b);
     let own = 0;
     if (rings[b]) {
-      const inside = joints.filter(({ ends }) => ends[0].body === b).map(({ ends }) => radius(ends[1].body, seen));
+      const inside = joints.filter(({ ends }) => ends[0].body === b).map(({ ends }) => room(ends[1].body, seen));
       const { moments } = principal(bodies[b].inertia);
       const alone = bodies[b].mass > 0 ? Math.sqrt(Math.max(...moments) / bodies[b].mass) : 0;
       own = Math.max(alone, RING_STEP * Math.max(0, ...inside));
@@ -140,6 +140,9 @@ export function forms(scene) {
     radii.set(b, own);
     return own;
   };
+
+  // With what stands off from a ring.
+  const room = (b, seen) => Math.max(radius(b, seen), ...(rings[b] ? held[b].map(({ point }) => distance(point, rings[b].at)) : []));
 
   const nested = rings.some(Boolean);
   const widest = Math.max(0, ...bodies.map((_, b) => (rings[b] ? radius(b) : 0)));
@@ -176,7 +179,13 @@ export function forms(scene) {
       for (const { point } of held[b]) {
         const off = add(point, at, -1);
         const inPlane = add(off, normal, -dot(off, normal));
-        if (length(inPlane) < 0.3 * radius(b)) continue;
+        if (length(off) < 0.3 * radius(b)) continue;
+        if (length(inPlane) < 0.3 * radius(b)) {
+          // Two arms from the pins that the ring hangs on.
+          const { axis } = pins.find(({ side }) => side === 1) ?? pins[0];
+          for (const sign of [-1, 1]) parts.push({ type: 'rod', from: add(at, axis, sign * radius(b)), to: point, thick: 0.7 * thick });
+          continue;
+        }
         parts.push({ type: 'rod', from: add(at, unit(inPlane), radius(b)), to: point, thick });
       }
       return parts;
@@ -226,6 +235,18 @@ export function forms(scene) {
     return parts;
   };
 
+  // A fork goes round where nothing else is joined to the ground.
+  const backOf = (b, { joint, point, axis }, wide) => {
+    const others = held[b].filter((other) => other.joint !== joint).map((other) => add(other.point, point, -1));
+    const aside = others.length ? middle(others) : [0, 0, 0];
+    const level = add(aside, axis, -dot(aside, axis));
+    return length(level) > 0.1 * wide ? scale(unit(level), -1) : unit(cross(axis, across(axis)));
+  };
+
+  // Whether what carries the mechanism is turned by a driver.
+  const rocks = (b) => bodies[b].support === 'driven'
+    && looks(scene).some((t) => distance(poseAt(scene, b, t).slice(4, 7), start[b].slice(4, 7)) > 1e-3);
+
   const groundParts = (b) => {
     const parts = [];
     for (const { joint, side, kind, point, axis } of held[b]) {
@@ -235,14 +256,15 @@ export function forms(scene) {
         // A fork about the outermost ring.
         const outer = radius(other);
         const wide = RING_STEP * 0.93 * outer;
-        const back = Math.abs(dot(down, axis)) < 0.8 ? unit(add(down, axis, -dot(down, axis)))
-          : unit(cross(axis, across(axis)));
+        const isUpright = Math.abs(dot(down, axis)) >= 0.8;
+        const back = isUpright ? backOf(b, { joint, point, axis }, wide) : unit(add(down, axis, -dot(down, axis)));
         parts.push({ type: 'arc', at: point, axis, back, radius: wide, thick: 1.7 * thick });
         for (const sign of [-1, 1]) {
           parts.push({ type: 'rod', from: add(point, axis, sign * outer), to: add(point, axis, sign * wide), thick: 0.8 * thick, metal: true });
         }
-        const foot = Math.abs(dot(down, axis)) < 0.8 ? add(point, back, wide) : add(point, axis, Math.sign(dot(down, axis)) * wide);
+        const foot = isUpright ? add(point, axis, Math.sign(dot(down, axis)) * wide) : add(point, back, wide);
         parts.push({ type: 'foot', at: foot, height: 0.35 * outer, wide: 0.5 * outer, thick });
+        if (rocks(b)) parts.push({ type: 'rocker', at: add(foot, down, 0.35 * outer), wide: 0.75 * outer });
       } else if (isTop(other, held[other].map((end) => end.point))) {
         const wide = solids[other].radius;
         parts.push({ type: 'foot', at: point, height: 0.8 * wide, wide: 0.5 * wide, thick: 0.07 * wide });

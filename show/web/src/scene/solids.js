@@ -1,7 +1,7 @@
 // From parts to meshes.
 import {
-  BoxGeometry, BufferGeometry, Color, ConeGeometry, CylinderGeometry, Float32BufferAttribute, Group, Matrix4, Mesh,
-  MeshStandardMaterial, PlaneGeometry, Quaternion, SphereGeometry, TorusGeometry, TubeGeometry, Curve, Vector3,
+  BoxGeometry, BufferGeometry, Color, ConeGeometry, CylinderGeometry, Float32BufferAttribute, Group, LatheGeometry, Matrix4,
+  Mesh, MeshStandardMaterial, PlaneGeometry, Quaternion, SphereGeometry, TorusGeometry, TubeGeometry, Curve, Vector2, Vector3,
 } from 'three';
 import { toCreasedNormals } from 'three/addons/utils/BufferGeometryUtils.js';
 import { across as anyAcross, add, cross, dot, middle } from '../vector.js';
@@ -156,6 +156,18 @@ const MAKERS = {
     group.quaternion.copy(toAxis(new Vector3(0, -1, 0), down));
     group.add(mesh(new CylinderGeometry(1.6 * part.thick, 2.2 * part.thick, part.height, 24), materials.fixed, [0, -part.height / 2, 0]));
     group.add(mesh(new CylinderGeometry(part.wide, 1.08 * part.wide, 0.16 * part.wide, 48), materials.fixed, [0, -part.height, 0]));
+    return group;
+  },
+  // A disc on half an ellipsoid, on which a body rocks.
+  rocker: ({ at, wide }, materials, down) => {
+    const outline = Array.from({ length: 16 }, (_, k) => {
+      const angle = (k * Math.PI) / 30;
+      return new Vector2(wide * Math.sin(angle), -0.55 * wide * Math.cos(angle));
+    });
+    const group = new Group();
+    group.position.copy(vector(at));
+    group.quaternion.copy(toAxis(new Vector3(0, -1, 0), down));
+    group.add(mesh(new LatheGeometry(outline, 48), materials.dark), mesh(new CylinderGeometry(wide, wide, 0.06 * wide, 48), materials.fixed));
     return group;
   },
   bracket,
