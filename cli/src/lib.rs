@@ -11,6 +11,7 @@ mod closed_loop;
 mod columns;
 mod compare;
 mod contacts;
+mod paths;
 mod controllers;
 mod events;
 mod export;

@@ -18,6 +18,7 @@ mod companion;
 mod control;
 mod failure;
 mod forecast;
+mod formula;
 mod grade;
 mod input;
 pub mod motion;
@@ -50,6 +51,8 @@ pub use schedule::{Impossible, Schedule, Segment, Settings};
 pub use spectrum::fastest_rate;
 pub use summary::{Summary, Tracker, energy_error};
 pub use timing::{Timing, time_by};
+pub use formula::Formula;
+pub use path::Path;
 pub use touch::Touch;
 pub use watch::{Occurrence, Watch, What};
 
@@ -61,5 +64,6 @@ pub const MANIFEST_FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 mod linkage;
 #[cfg(test)]
 mod loops;
+mod path;
 #[cfg(test)]
 mod spinner;

@@ -147,8 +147,10 @@ mod tests {
                         ..Controller::default()
                     }],
                     watches: vec![Watch {
-                        of: Seen::Rate(1, 0),
-                        minus: Some(Seen::Output(2)),
+                        of: Formula::Difference(Box::new([
+                            Formula::Seen(Seen::Rate(1, 0)),
+                            Formula::Power(Box::new(Formula::Number(AWKWARD[1])), -2),
+                        ])),
                         level: AWKWARD[0],
                         rising: true,
                         falling: false,
