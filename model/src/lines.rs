@@ -87,9 +87,10 @@ impl BodyMotion {
 impl Model {
     /// All motions along straight lines, each with the name of the driver or body that moves so.
     pub fn lines(&self) -> Vec<(&str, &Lines)> {
-        let of_drivers = self.drivers.iter().flat_map(|driver| {
-            driver.motion.lines().into_iter().map(|lines| (driver.name.as_str(), lines))
-        });
+        let of_drivers = self
+            .drivers
+            .iter()
+            .flat_map(|driver| driver.motion.lines().into_iter().map(|lines| (driver.name.as_str(), lines)));
         let of_bodies = self.bodies.iter().flat_map(|body| {
             let parts = body.motion.iter().flat_map(BodyMotion::parts).flat_map(Motion::lines);
             parts.map(|lines| (body.name.as_str(), lines))

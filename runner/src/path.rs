@@ -129,12 +129,7 @@ impl Paths {
 
     /// A mechanism on lines that begin at this time, at which accelerations change neither places nor rates; and the
     /// same driven by accelerations that are so large a multiple of how much each slope changes.
-    pub(crate) fn pushed<M: Mechanism + Clone>(
-        &self,
-        mechanism: &M,
-        t: f64,
-        slopes: &[[f64; 2]],
-    ) -> [M; 2] {
+    pub(crate) fn pushed<M: Mechanism + Clone>(&self, mechanism: &M, t: f64, slopes: &[[f64; 2]]) -> [M; 2] {
         let mut still = mechanism.clone();
         for (path, [from, place, rate]) in self.paths.iter().zip(&self.lines) {
             for (index, value) in path.set_to(&[t, place + rate * (t - from), *rate]) {

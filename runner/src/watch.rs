@@ -1,7 +1,7 @@
 //! Events in a run: what is looked for, and what was found.
 
-use crate::formula::Formula;
 use crate::Seen;
+use crate::formula::Formula;
 use gyro_sim::Real;
 use gyro_sim::events::Direction;
 use nanoserde::{DeBin, SerBin};
@@ -121,9 +121,9 @@ impl<T: Real> Watches<T> {
     /// What crosses zero; those that do not exist never do.
     pub(crate) fn values(&self, see: impl Fn(Seen) -> T) -> [T; Watch::MOST] {
         std::array::from_fn(|k| {
-            self.watches.get(k).map_or(T::constant(1.0), |watch| {
-                watch.of.value(&see) - T::constant(watch.level)
-            })
+            self.watches
+                .get(k)
+                .map_or(T::constant(1.0), |watch| watch.of.value(&see) - T::constant(watch.level))
         })
     }
 

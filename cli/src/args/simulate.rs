@@ -243,13 +243,7 @@ fn event(text: &str) -> Result<EventSetting, String> {
     }
     let level = parse_decimal(level.trim())
         .ok_or_else(|| format!("`{}` is not a decimal number, such as -0.08 or 8e-2", level.trim()))?;
-    Ok(EventSetting {
-        text: text.to_owned(),
-        of: of.to_owned(),
-        level,
-        direction,
-        stops,
-    })
+    Ok(EventSetting { text: text.to_owned(), of: of.to_owned(), level, direction, stops })
 }
 
 fn set_input(text: &str) -> Result<(String, InputSetting), String> {

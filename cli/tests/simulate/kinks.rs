@@ -80,13 +80,40 @@ fn pendulum([mass, length, inertia]: [f64; 3], saw: &Saw, [angle, rate]: [f64; 2
 const RUNS: [(&[&str], f64); 9] = [
     (&["--engine", "assembled", "--integrator", "dop853", "--tolerance", "1e-11"], 1e-9),
     (&["--engine", "dense", "--integrator", "tsit5", "--tolerance", "1e-9"], 1e-7),
-    (&["--engine", "assembled", "--integrator", "dop853", "--tolerance", "1e-11", "--correction", "none"], 1e-9),
+    (
+        &["--engine", "assembled", "--integrator", "dop853", "--tolerance", "1e-11", "--correction", "none"],
+        1e-9,
+    ),
     (&["--engine", "jit", "--integrator", "dop853", "--tolerance", "1e-11"], 1e-9),
-    (&["--engine", "jit", "--integrator", "dop853", "--tolerance", "1e-11", "--correction", "mass-weighted"], 1e-9),
+    (
+        &[
+            "--engine",
+            "jit",
+            "--integrator",
+            "dop853",
+            "--tolerance",
+            "1e-11",
+            "--correction",
+            "mass-weighted",
+        ],
+        1e-9,
+    ),
     (&["--engine", "jit", "--coordinates", "joint", "--integrator", "dop853", "--tolerance", "1e-12"], 1e-10),
     (&["--engine", "jit", "--coordinates", "joint", "--integrator", "tsit5", "--tolerance", "1e-9"], 1e-7),
     (&["--engine", "jit", "--coordinates", "joint", "--integrator", "rodas4", "--tolerance", "1e-9"], 1e-6),
-    (&["--engine", "jit", "--correction", "baumgarte=50", "--integrator", "dop853", "--tolerance", "1e-11"], 1e-8),
+    (
+        &[
+            "--engine",
+            "jit",
+            "--correction",
+            "baumgarte=50",
+            "--integrator",
+            "dop853",
+            "--tolerance",
+            "1e-11",
+        ],
+        1e-8,
+    ),
 ];
 
 #[test]
@@ -96,7 +123,8 @@ fn a_pendulum_on_a_cart_that_jerks_is_right_by_all_engines_and_methods() {
     for (case, (run, close)) in RUNS.iter().cycle().take(18).enumerate() {
         let saw = Saw::random(&mut random, 2.0);
         saw.write(&folder, "saw.csv");
-        let [mass, length, inertia] = [(0.5, 2.0), (0.2, 0.6), (0.01, 0.1)].map(|(a, b)| random.random_range(a..b));
+        let [mass, length, inertia] =
+            [(0.5, 2.0), (0.2, 0.6), (0.01, 0.1)].map(|(a, b)| random.random_range(a..b));
         let [angle, rate] = [(-1.0, 1.0), (-3.0, 3.0)].map(|(a, b)| random.random_range(a..b));
         let text = format!(
             "name = \"jerks\"\n{HEAD}[simulation]\nt_end = 2\n[[body]]\nname = \"bob\"\nmass = {mass:?}\n\
@@ -201,7 +229,8 @@ fn stops_on_a_cart_that_jerks_push_along() {
         let text = format!("name = \"rider\"\n{HEAD}[simulation]\nt_end = 2\n{}", rider.write());
         fs::write(folder.0.join("rider.toml"), text).unwrap();
         let method = [["dop853", "1e-11"], ["tsit5", "1e-10"]][case / 2 % 2];
-        let how = ["--engine", "jit", "--effort", "quick", "--coordinates", "joint", "--integrator", method[0]];
+        let how =
+            ["--engine", "jit", "--effort", "quick", "--coordinates", "joint", "--integrator", method[0]];
         let run = json(&folder, &[&["rider.toml"], &how[..], &["--tolerance", method[1]]].concat());
         let expected = rider.exact(&saw, 2.0);
         let found = ["position", "rate"].map(|key| number(&run["joints"]["slide"][key]));
@@ -249,7 +278,8 @@ fn random_driven_chains_agree_and_keep_their_ledger() {
     for case in 0..8 {
         Saw::random(&mut random, 1.0).write(&folder, "saw.csv");
         Saw::random(&mut random, 1.0).write(&folder, "tilt.csv");
-        let mut text = "format = 1\nname = \"chain\"\ngravity = [0, -9.81, 0]\n[simulation]\nt_end = 1\n".to_owned();
+        let mut text =
+            "format = 1\nname = \"chain\"\ngravity = [0, -9.81, 0]\n[simulation]\nt_end = 1\n".to_owned();
         if case % 2 == 0 {
             text.push_str("[[body]]\nname = \"base\"\nfixed = true\n");
         } else {
@@ -314,7 +344,10 @@ fn what_cannot_follow_kinks_says_so() {
     let folder = Folder::new("kinks-refused");
     fs::write(folder.0.join("saw.csv"), "t,x\n0,0\n0.25,0.1\n0.5,-0.125\n").unwrap();
     fs::write(folder.0.join("belt.toml"), format!("name = \"belt\"\n{HEAD}")).unwrap();
-    refused(&xtask(&folder, &["export", "c", "belt.toml", "--out", "c"]), "cannot follow a motion along straight lines");
+    refused(
+        &xtask(&folder, &["export", "c", "belt.toml", "--out", "c"]),
+        "cannot follow a motion along straight lines",
+    );
     let run = |args: &[&str]| simulate(&folder, &[&["belt.toml"], args].concat());
     refused(&run(&["--input", "belt_rate=1"]), "this is part of the motion of `belt`");
     let wrong = HEAD.replace("\"linear\"", "\"held\"");

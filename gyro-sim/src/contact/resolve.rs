@@ -54,9 +54,11 @@ fn by_newton<T: Real, const N: usize>(
     let target = |k: usize| hits[k].map_or(zero, |hit| hit.outward * hit.rebound);
     let right = core::array::from_fn(|k| target(k) - rates[k]);
     let rebounds = hits.iter().flatten().map(|hit| hit.rebound);
-    let scale = rates.iter().copied().chain(rebounds).fold(zero, |most, rate| {
-        if rate.abs() > most { rate.abs() } else { most }
-    });
+    let scale = rates
+        .iter()
+        .copied()
+        .chain(rebounds)
+        .fold(zero, |most, rate| if rate.abs() > most { rate.abs() } else { most });
     let [rounding, unmet] = [ROUNDING, UNMET].map(not_below_rounding::<T>);
     let mut best: Option<(T, [T; N], [T; N])> = None;
     let n = hits.iter().flatten().count();

@@ -217,8 +217,7 @@ fn impulses_are_complementary_and_take_energy() {
         let compliance: [[f64; 4]; 4] = core::array::from_fn(|i| core::array::from_fn(|k| column(i, k)));
         // Rates that the freedoms allow.
         let freedoms: [f64; 4] = core::array::from_fn(|_| random.between(-1.0, 1.0));
-        let rates: [f64; 4] =
-            core::array::from_fn(|i| (0..rank).map(|r| g[r][i] * freedoms[r]).sum::<f64>());
+        let rates: [f64; 4] = core::array::from_fn(|i| (0..rank).map(|r| g[r][i] * freedoms[r]).sum::<f64>());
         let hits: [Option<Hit<f64>>; 4] = core::array::from_fn(|k| {
             // What is hit is approached; of odd cases some are touched only, and left.
             let towards = if rates[k] > 0.0 { -1.0 } else { 1.0 };

@@ -41,7 +41,13 @@ impl Named<'_> {
         Ok(match &term.kind {
             Kind::Number(text) => match parse_decimal(text).filter(in_range) {
                 Some(value) => Formula::Number(Number::Exact(value)),
-                None => return Err(fault(term, "a number is too large or too small", "write one of moderate size")),
+                None => {
+                    return Err(fault(
+                        term,
+                        "a number is too large or too small",
+                        "write one of moderate size",
+                    ));
+                }
             },
             Kind::Name(name) => self.name(term, name)?,
             Kind::Root(a) => Formula::Root(one(a)?),
@@ -53,7 +59,8 @@ impl Named<'_> {
             Kind::Power(a, exponent) => {
                 let exponent = exponent.parse().ok().filter(|n: &i32| n.abs() <= MOST_EXPONENT);
                 let help = format!("write a whole number from -{MOST_EXPONENT} to {MOST_EXPONENT}");
-                let exponent = exponent.ok_or_else(|| fault(term, "the exponent of a power is too large", &help))?;
+                let exponent =
+                    exponent.ok_or_else(|| fault(term, "the exponent of a power is too large", &help))?;
                 Formula::Power(one(a)?, exponent)
             }
             Kind::In(a, unit) => {
@@ -88,9 +95,10 @@ fn has_columns(formula: &Formula) -> bool {
         Formula::Number(_) => false,
         Formula::Seen(_) => true,
         Formula::Negative(a) | Formula::Root(a) | Formula::Power(a, _) => has_columns(a),
-        Formula::Sum(parts) | Formula::Difference(parts) | Formula::Product(parts) | Formula::Quotient(parts) => {
-            parts.iter().any(has_columns)
-        }
+        Formula::Sum(parts)
+        | Formula::Difference(parts)
+        | Formula::Product(parts)
+        | Formula::Quotient(parts) => parts.iter().any(has_columns),
     }
 }
 

@@ -247,12 +247,15 @@ fn find(
     });
     if let Some(Setter { kind, name, .. }) = set {
         let (what, help) = match kind {
-            SetterKind::Controller => (
-                "controller",
-                "vary a parameter that the controller's gains or set points are written with",
-            ),
-            SetterKind::Contact => ("contact", "vary a parameter that the contact's numbers are written with"),
-            SetterKind::Lines => ("motion of", "vary something else: the rows of its table are what they are"),
+            SetterKind::Controller => {
+                ("controller", "vary a parameter that the controller's gains or set points are written with")
+            }
+            SetterKind::Contact => {
+                ("contact", "vary a parameter that the contact's numbers are written with")
+            }
+            SetterKind::Lines => {
+                ("motion of", "vary something else: the rows of its table are what they are")
+            }
         };
         let message = format!("the {what} `{name}` sets this input");
         reader.wrong(span, [&message, "set already", help]);
