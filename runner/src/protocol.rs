@@ -91,12 +91,12 @@ pub fn read<T: DeBin>(input: &mut impl BufRead) -> io::Result<Option<T>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Formula, Path};
     use crate::motion::Element;
     use crate::{
         BodySample, Controller, Coordinates, Correction, Input, Integrator, JointSample, Seen, Touch, Watch,
         What, When, Wiring,
     };
+    use crate::{Formula, Path};
     use gyro_sim::{JointPlace, Owner, Passage, Statistics};
     use gyro_yardstick::Measured;
 
@@ -157,7 +157,10 @@ mod tests {
                         falling: false,
                         stops: correct_every.is_some(),
                     }],
-                    paths: vec![Path { inputs: [3, 1, 4, 2], rows: vec![AWKWARD[..2].try_into().unwrap(); 2] }],
+                    paths: vec![Path {
+                        inputs: [3, 1, 4, 2],
+                        rows: vec![AWKWARD[..2].try_into().unwrap(); 2],
+                    }],
                     contacts: vec![Touch {
                         on: (1, 0),
                         input: 2,

@@ -96,9 +96,10 @@ pub struct SimulateArgs {
     #[arg(long, value_name = "NAME=[held:|linear:|smooth:]FILE.csv|NUMBER", value_parser = set_input)]
     pub(crate) input: Vec<(String, InputSetting)>,
     /// List when a number crosses a level, beside the [[event]] of the model file: what crosses is a column of the
-    /// run's table, or a formula of columns and parameters such as `pan rate - 2*tilt`; `=` for any direction, `>` for upwards, `<` for downwards; with `:stop`
-    /// the run ends there. Crossings are those of the interpolated motion, to rounding; missed may be two that are
-    /// less than an eighth of a step apart (docs/events.md). May be given several times
+    /// run's table, or a formula of columns and parameters such as `pan rate - 2*tilt`; `=` for any direction, `>` for
+    /// upwards, `<` for downwards; with `:stop` the run ends there. Crossings are those of the interpolated motion, to
+    /// rounding; missed may be two that are less than an eighth of a step apart (docs/events.md). May be given several
+    /// times
     #[arg(long, value_name = "FORMULA{=|>|<}LEVEL[:stop]", value_parser = event)]
     pub(crate) event: Vec<EventSetting>,
     /// Refuse a model with redundant constraint rows instead of dropping the rows with a warning

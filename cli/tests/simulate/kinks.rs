@@ -52,8 +52,8 @@ fn jumps(run: &Value) -> Vec<(f64, [f64; 2])> {
     events.map(|event| (number(&event["t"]), [0, 1].map(|k: usize| number(&event["rates"][k])))).collect()
 }
 
-/// A pendulum on a driven cart: `(I + m l²) θ̈ = −m g l sin θ` between kinks, at which θ̇ jumps by `−m l cos θ Δẋ / (I +
-/// m l²)`; by Kutta's method in steps of 1e-4 s.
+/// A pendulum on a driven cart: `(I + m l²) θ̈ = −m g l sin θ` between kinks, at which θ̇ jumps by
+/// `−m l cos θ Δẋ / (I + m l²)`; by Kutta's method in steps of 1e-4 s.
 fn pendulum([mass, length, inertia]: [f64; 3], saw: &Saw, [angle, rate]: [f64; 2], t_end: f64) -> [f64; 2] {
     let whole = inertia + mass * length * length;
     let slope = |[x, v]: [f64; 2]| [v, -mass * 9.81 * length * x.sin() / whole];
@@ -317,6 +317,10 @@ fn random_driven_chains_agree_and_keep_their_ledger() {
             }
         }
         fs::write(folder.0.join("chain.toml"), &text).unwrap();
+        if case < 2 {
+            let proved = xtask(&folder, &["generate", "chain.toml", "--out", "chain.rs"]);
+            assert!(proved.status.success(), "{}", String::from_utf8_lossy(&proved.stderr));
+        }
         let how = ["--effort", "quick", "--integrator", "dop853", "--tolerance", "1e-12"];
         let run = |args: &[&str]| json(&folder, &[&["chain.toml"], &how[..], args].concat());
         let [assembled, maximal, joint] = [
