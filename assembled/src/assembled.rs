@@ -242,8 +242,7 @@ impl<T: Number, S: Solver<T>> Mechanism for Assembled<T, S> {
     }
 
     fn set_input(&mut self, index: usize, value: T) -> bool {
-        let input = self.lowered.scene.inputs.get_mut(index);
-        input.map(|(_, present)| *present = value).is_some()
+        self.lowered.set_input(index, value)
     }
 }
 

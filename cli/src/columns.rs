@@ -1,5 +1,6 @@
 //! Samples as a table of named columns with units.
 
+use crate::paths;
 use crate::scene::observed;
 use gyro_model::{
     CoordinateKind, ForceKind, JointCoordinate, JointKind, Model, Number, Output, OutputKind, Parameter,
@@ -99,6 +100,8 @@ pub(crate) fn inputs_at(model: &Model, start: &Start, sample: &Sample) -> Vec<f6
     let controlled = start.controllers.iter().flat_map(|controller| &controller.inputs);
     let set = controlled.map(|(index, _)| *index).chain(start.contacts.iter().map(|contact| contact.input));
     set.zip(&sample.controlled).for_each(|(index, value)| values[index] = *value);
+    let of_paths = start.paths.iter().flat_map(|path| path.inputs_at(sample.t));
+    of_paths.for_each(|(index, value)| values[index] = value);
     values
 }
 
@@ -181,8 +184,9 @@ impl Table<'_> {
     fn add_inputs(&mut self, model: &Model, start: &Start) {
         let joints = model.joints.iter().map(|joint| &joint.name);
         let taken: Vec<&String> = joints.chain(model.outputs.iter().map(|output| &output.name)).collect();
-        for (index, input) in model.inputs.iter().enumerate() {
-            let name = &input.name;
+        let shown = |index: &usize| paths::moving(model, *index).is_none();
+        for index in (0..model.inputs.len()).filter(shown) {
+            let name = &model.inputs[index].name;
             let name = if taken.contains(&name) { format!("input {name}") } else { name.clone() };
             self.add(&name, input_unit(model, index), |s| inputs_at(model, start, s)[index]);
         }

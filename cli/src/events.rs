@@ -3,29 +3,20 @@
 use crate::args::EventSetting;
 use crate::controllers::seen;
 use crate::failure::Failure;
-use crate::words::{self, count, number, table};
-use gyro_model::{Direction, Event, Model, Number, Seen};
-use gyro_runner::{Occurrence, Watch, What};
+use crate::words::{count, number, table};
+use gyro_model::{Direction, Event, Model, Number};
+use gyro_runner::{Formula, Occurrence, Watch, What};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// Adds the events of the command line to those of a model.
 pub(crate) fn add(model: &mut Model, given: &[EventSetting]) -> Result<(), Failure> {
-    let known = model.visible();
-    let find = |setting: &EventSetting, word: &str| -> Result<Seen, Failure> {
-        if let Some((_, seen)) = known.iter().find(|(name, _)| name == word) {
-            return Ok(*seen);
-        }
-        let names: Vec<&str> = known.iter().map(|(name, _)| name.as_str()).collect();
-        let help = words::instead(word, &names);
-        Err(Failure::Usage(format!("--event {}: there is no column `{word}`; {help}", setting.text)))
-    };
     for setting in given {
+        let refused = |words: String| Failure::Usage(format!("--event {}: {words}", setting.text));
         let event = Event {
             name: setting.text.clone(),
-            of: find(setting, &setting.of)?,
-            minus: setting.minus.as_ref().map(|word| find(setting, word)).transpose()?,
+            of: model.formula(&setting.of).map_err(refused)?,
             level: Number::Exact(setting.level.clone()),
             direction: setting.direction,
             stops: setting.stops,
@@ -43,14 +34,31 @@ pub(crate) fn add(model: &mut Model, given: &[EventSetting]) -> Result<(), Failu
 /// What a run of a model looks for.
 pub(crate) fn watches(model: &Model) -> Vec<Watch> {
     let one = |event: &Event| Watch {
-        of: seen(model, event.of),
-        minus: event.minus.map(|minus| seen(model, minus)),
+        of: formula(model, &event.of),
         level: model.value(&event.level),
         rising: event.direction != Direction::Falling,
         falling: event.direction != Direction::Rising,
         stops: event.stops,
     };
     model.events.iter().map(one).collect()
+}
+
+/// A formula in numbers.
+fn formula(model: &Model, of: &gyro_model::Formula) -> Formula {
+    use gyro_model::Formula as Of;
+    let one = |a: &Of| Box::new(formula(model, a));
+    let two = |parts: &[Of; 2]| Box::new(parts.each_ref().map(|part| formula(model, part)));
+    match of {
+        Of::Number(number) => Formula::Number(model.value(number)),
+        Of::Seen(what) => Formula::Seen(seen(model, *what)),
+        Of::Negative(a) => Formula::Negative(one(a)),
+        Of::Root(a) => Formula::Root(one(a)),
+        Of::Sum(parts) => Formula::Sum(two(parts)),
+        Of::Difference(parts) => Formula::Difference(two(parts)),
+        Of::Product(parts) => Formula::Product(two(parts)),
+        Of::Quotient(parts) => Formula::Quotient(two(parts)),
+        Of::Power(base, exponent) => Formula::Power(one(base), *exponent),
+    }
 }
 
 /// Refuses a model whose events end runs.
@@ -81,6 +89,10 @@ fn told<'m>(model: &'m Model, occurrence: &Occurrence) -> Told<'m> {
         What::Hit { contact, before, after } => {
             let what = if before > 0.0 { "hits upper" } else { "hits lower" };
             Told { rates: Some([before, after]), ..of_contact(contact, what) }
+        }
+        What::Kinks { path, before, after } => {
+            let name = model.lines().get(path).map_or("", |(name, _)| name);
+            Told { name, what: "jumps", rates: Some([before, after]) }
         }
         What::Rests { contact } => of_contact(contact, "rests"),
         What::Leaves { contact } => of_contact(contact, "leaves"),

@@ -10,6 +10,7 @@ use crate::contacts;
 use crate::controllers;
 use crate::failure::Failure;
 use crate::generate::{Asked, modules};
+use crate::paths;
 use crate::progress::Spinner;
 use crate::scene;
 use crate::write::{self, Known};
@@ -40,6 +41,7 @@ fn c(args: &CArgs) -> Result<(), Failure> {
     let model = scene::read(&args.model)?;
     controllers::say_left_out(&model, "the exported code");
     contacts::say_left_out(&model, "the exported code");
+    paths::refuse(&model, "exported code")?;
     let exported = gyro_export::c(&model, &module.code, numbers(args.precision))
         .map_err(|e| unwritten(&args.model, &e))?;
     prove(&args.model, (&model, &module), &exported)?;

@@ -2,7 +2,7 @@
 
 use crate::args::InputSetting;
 use crate::failure::Failure;
-use crate::{contacts, controllers, files, words};
+use crate::{contacts, controllers, files, paths, words};
 use gyro_model::{Model, Rational};
 use gyro_runner::{Between, Input};
 use std::path::Path;
@@ -23,6 +23,10 @@ pub(crate) fn inputs(model: &Model, given: &[(String, InputSetting)]) -> Result<
         }
         if let Some(contact) = contacts::acting(model, index) {
             let words = format!("--input {name}: this is the force of the contact `{}`", contact.name);
+            return Err(Failure::Usage(words));
+        }
+        if let Some(owner) = paths::moving(model, index) {
+            let words = format!("--input {name}: this is part of the motion of `{owner}`");
             return Err(Failure::Usage(words));
         }
         let input = match setting {

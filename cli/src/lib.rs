@@ -35,6 +35,7 @@ pub mod machine;
 pub mod machine_code;
 mod nested;
 mod new;
+mod paths;
 pub mod places;
 mod plot;
 pub mod programs;

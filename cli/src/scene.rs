@@ -3,7 +3,7 @@
 use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::progress::Spinner;
-use crate::{contacts, controllers, events, files, inputs, remarks};
+use crate::{contacts, controllers, events, files, inputs, paths, remarks};
 use gyro_model::{ForceKind, JointKind, Method, Model, Move, Number, Rational, Support};
 use gyro_runner::{
     Approach, Controller, Coordinates, Correction, Input, Offers, Settings, Start, any_varies,
@@ -277,6 +277,7 @@ pub(crate) fn start(model: &Model, assembled: &gyro_model::Start) -> Start {
         controllers: controllers::controllers(model),
         watches: events::watches(model),
         contacts: contacts::contacts(model),
+        paths: paths::paths(model),
     }
 }
 

@@ -15,7 +15,7 @@ use crate::{
     columns, events, interrupt, json, linearization, nested, plot, quicker, remarks, summary, words,
 };
 use gyro_assembled::{Form, QuickLookError, quick_look};
-use gyro_runner::{Event, Sample, Summary};
+use gyro_runner::{Event, Sample, Start, Summary};
 use std::path::{Path, PathBuf};
 
 /// Simulates a model, prints a summary and writes its files.
@@ -195,7 +195,8 @@ fn write_table(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<PathB
 /// Beside the samples, where anything is looked for; an earlier list would belie a run without.
 fn write_events(scene: &Scene, outcome: &Outcome, folder: &Path) -> Result<Option<PathBuf>, Failure> {
     let path = events_path(&scene.model.name, folder);
-    if scene.start.watches.is_empty() && scene.start.contacts.is_empty() {
+    let Start { watches, contacts, paths, .. } = &scene.start;
+    if watches.is_empty() && contacts.is_empty() && paths.is_empty() {
         write::remove(&path);
         return Ok(None);
     }

@@ -4,7 +4,7 @@ use crate::args::Engine;
 use crate::scene::Scene;
 use crate::verdict::Outcome;
 use crate::words::{count, number, table};
-use crate::{columns, compare, contacts, controllers, events, remarks, verdict};
+use crate::{columns, compare, contacts, controllers, events, paths, remarks, verdict};
 use gyro_assembled::Careful;
 use gyro_codegen::Effort;
 use gyro_model::{Model, Move};
@@ -141,7 +141,7 @@ fn mechanism(scene: &Scene) -> String {
             let _ = writeln!(text, "input {}: set by controller {}", input.name, controller.name);
             continue;
         }
-        if contacts::acting(model, index).is_some() {
+        if contacts::acting(model, index).is_some() || paths::moving(model, index).is_some() {
             continue;
         }
         let given = scene.start.inputs.iter().find(|given| given.index == index);

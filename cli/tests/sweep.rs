@@ -3,6 +3,9 @@
 //! They compile programs, so they are run by themselves: `cargo test --package gyro-cli --test sweep -- --ignored`.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+#[path = "sweep/contacts.rs"]
+mod contacts;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -1,16 +1,14 @@
 //! Events: crossings of levels, which runs find, list and may end at.
 
-use crate::{Number, Seen};
+use crate::{Formula, Number};
 
-/// A number of the mechanism, or the difference of two, crosses a level.
+/// A number of the mechanism, or a formula of several, crosses a level.
 #[derive(Clone, Debug)]
 pub struct Event {
     /// Name, an identifier.
     pub name: String,
     /// What crosses.
-    pub of: Seen,
-    /// What is subtracted from it.
-    pub minus: Option<Seen>,
+    pub of: Formula,
     /// The level, in the unit of what crosses.
     pub level: Number,
     /// Which crossings count.

@@ -16,7 +16,9 @@ mod diagnostics;
 mod directions;
 mod elements;
 mod event;
+mod formula;
 mod kinematics;
+mod lines;
 mod motion;
 mod number;
 mod numbers;
@@ -39,7 +41,9 @@ pub use elements::{
     OutputKind, StopSide,
 };
 pub use event::{Direction, Event};
+pub use formula::Formula;
 pub use kinematics::Kinematics;
+pub use lines::Lines;
 pub use motion::{BodyMotion, Motion, Prescribed};
 pub use number::{Number, Rational, parse_decimal, to_f64};
 pub use parse::{is_keyword, read, read_with};
@@ -63,7 +67,8 @@ pub struct Model {
     /// The entries of `[parameters]` that are computed from others, in the order of the model file. Wherever the model
     /// file names one, its computation stands in the model.
     pub derived_parameters: Vec<DerivedParameter>,
-    /// Numbers that the caller sets at every step (motor torques), with their values until then. Only forces use them.
+    /// Numbers that the caller sets at every step (motor torques), with their values until then. Forces use them, and
+    /// motions along straight [`Lines`].
     pub inputs: Vec<Parameter>,
     /// What each input is between the rows of a table that it may follow.
     pub between: Vec<Between>,

@@ -3,7 +3,7 @@
 use num_dual::Dual2_64;
 
 use crate::kinematics::{Scalar, product};
-use crate::{Body, Model, Number, Quaternion, Spline, Vector, unit_vector};
+use crate::{Body, Lines, Model, Number, Quaternion, Spline, Vector, unit_vector};
 
 /// A function of time with values in rad or m.
 #[derive(Clone, Debug)]
@@ -25,6 +25,8 @@ pub enum Motion {
     Product(Vec<Motion>),
     /// A smooth curve through the rows of a table.
     Table(Spline),
+    /// Straight lines through the rows of a table.
+    Lines(Lines),
 }
 
 /// A body's whole motion, prescribed: it has no coordinates, its pose is folded into the formulas as a function of
@@ -65,10 +67,10 @@ impl Motion {
         [x.re, x.v1, x.v2]
     }
 
-    /// The knots of its tables.
+    /// The knots of its smooth tables.
     fn add_knots(&self, knots: &mut Vec<f64>) {
         match self {
-            Self::Polynomial(_) | Self::Sinusoid { .. } => {}
+            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Lines(_) => {}
             Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.add_knots(knots)),
             Self::Table(spline) => knots.extend(&spline.knots),
         }
@@ -88,12 +90,14 @@ impl Motion {
                 factors.iter().fold(D::one(), |product, factor| product * factor.at(model, t))
             }
             Self::Table(spline) => spline.at(t),
+            Self::Lines(lines) => lines.at(t),
         }
     }
 }
 
 impl Model {
-    /// The times at which prescribed motions are not smooth: the knots of all tables.
+    /// The times at which prescribed motions are not smooth though their velocities are continuous: the knots of all
+    /// smooth tables. Kinks are told by [`Model::lines`].
     pub fn knots(&self) -> Vec<f64> {
         let mut knots = Vec::new();
         self.drivers.iter().for_each(|driver| driver.motion.add_knots(&mut knots));

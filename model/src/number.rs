@@ -22,7 +22,7 @@ pub enum Number {
         /// Whether the parameter enters with a minus sign.
         negated: bool,
     },
-    /// An input, by its index, with its sign. Only forces have inputs.
+    /// An input, by its index, with its sign. Only forces have such numbers.
     Input {
         /// Index into [`crate::Model::inputs`].
         index: usize,

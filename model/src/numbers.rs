@@ -32,7 +32,10 @@ impl Model {
         self.forces.iter().for_each(|force| force.kind.add_numbers(&mut numbers));
         self.outputs.iter().for_each(|output| numbers.extend(output.kind.point().into_iter().flatten()));
         self.controllers.iter().for_each(|controller| numbers.extend(controller.numbers()));
-        numbers.extend(self.events.iter().map(|event| &event.level));
+        for event in &self.events {
+            numbers.push(&event.level);
+            numbers.extend(event.of.numbers());
+        }
         self.contacts.iter().for_each(|contact| numbers.extend(contact.numbers()));
         numbers
     }
@@ -60,7 +63,7 @@ impl Motion {
             Self::Sum(parts) | Self::Product(parts) => {
                 parts.iter().for_each(|part| part.add_numbers(numbers));
             }
-            Self::Table(_) => {}
+            Self::Table(_) | Self::Lines(_) => {}
         }
     }
 }

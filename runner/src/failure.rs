@@ -149,7 +149,7 @@ fn element<M: Mechanism>(mechanism: &M, index: usize) -> String {
         let k = index - positions;
         (k / 6, if k % 6 < 3 { "velocity" } else { "angular velocity" })
     } else {
-        return "the work done or the count of a joint's turns".to_owned();
+        return "the work done, the count of a joint's turns or the formula of an event".to_owned();
     };
     format!("the {what} of body `{}`", mechanism.description().bodies[body])
 }

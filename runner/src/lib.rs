@@ -18,6 +18,7 @@ mod companion;
 mod control;
 mod failure;
 mod forecast;
+mod formula;
 mod grade;
 mod input;
 pub mod motion;
@@ -40,9 +41,11 @@ pub use companion::{Difference, companions, differences};
 pub use control::{Controller, Seen, Wiring};
 pub use failure::{Failure, describe, describe_in};
 pub use forecast::{Forecast, duration_words};
+pub use formula::Formula;
 pub use grade::{Grade, Judgement, Measure, Reason, balance, judge};
 pub use input::{Between, Input, any_varies};
 pub use offers::Offers;
+pub use path::Path;
 pub use remark::{Promise, Remark};
 pub use run::{Event, Start, run, run_by, scheduled};
 pub use sample::{BodySample, JointSample, Sample};
@@ -61,5 +64,6 @@ pub const MANIFEST_FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 mod linkage;
 #[cfg(test)]
 mod loops;
+mod path;
 #[cfg(test)]
 mod spinner;

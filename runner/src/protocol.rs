@@ -96,6 +96,7 @@ mod tests {
         BodySample, Controller, Coordinates, Correction, Input, Integrator, JointSample, Seen, Touch, Watch,
         What, When, Wiring,
     };
+    use crate::{Formula, Path};
     use gyro_sim::{JointPlace, Owner, Passage, Statistics};
     use gyro_yardstick::Measured;
 
@@ -147,12 +148,18 @@ mod tests {
                         ..Controller::default()
                     }],
                     watches: vec![Watch {
-                        of: Seen::Rate(1, 0),
-                        minus: Some(Seen::Output(2)),
+                        of: Formula::Difference(Box::new([
+                            Formula::Seen(Seen::Rate(1, 0)),
+                            Formula::Power(Box::new(Formula::Number(AWKWARD[1])), -2),
+                        ])),
                         level: AWKWARD[0],
                         rising: true,
                         falling: false,
                         stops: correct_every.is_some(),
+                    }],
+                    paths: vec![Path {
+                        inputs: [3, 1, 4, 2],
+                        rows: vec![AWKWARD[..2].try_into().unwrap(); 2],
                     }],
                     contacts: vec![Touch {
                         on: (1, 0),

@@ -14,6 +14,7 @@ use crate::forecast::{self, Forecast};
 use crate::input::{any_varies, set};
 use crate::motion::{self, Course, Linear, Motion, MotionBuilder, OperatingPoint};
 use crate::offers::Offers;
+use crate::path::{Path, Paths};
 use crate::sample::{Observer, work_scale};
 use crate::spectrum::fastest_rate;
 use crate::watch::Watches;
@@ -44,6 +45,8 @@ pub struct Start {
     pub inputs: Vec<Input>,
     /// Times, s, at which the mechanism's own motions are not smooth: steps under error control end there.
     pub knots: Vec<f64>,
+    /// Motions along straight lines, whose velocities jump.
+    pub paths: Vec<Path>,
     /// Indices of the bodies whose pose and velocity are sampled.
     pub observed_bodies: Vec<usize>,
     /// What sets inputs in a closed loop; none of them is among `inputs`, and none is set twice.
@@ -122,13 +125,15 @@ pub fn run_by<M: Partition<Scalar: Real> + Clone + 'static>(
     if let Some(words) = offers.refusal(&settings, approach) {
         return Err(Failure::Refused(words));
     }
+    let paths = Paths::new(&start.paths, approach.tolerance.is_none().then_some(settings.step));
+    paths.set(mechanism);
     let y = state(mechanism, start)?;
     state::refuse_singular(mechanism, &y)?;
     set(mechanism, &start.inputs, 0.0);
     let mut told = Told { tell, last: Instant::now() };
     foretell(mechanism, builder, (&settings, approach), &y, &mut told)?;
     let motion = begin(builder, mechanism, approach, (&y, start))?;
-    let mut run = Run::new(mechanism, motion, y, start, approach);
+    let mut run = Run::new(mechanism, motion, (y, start), approach, paths);
     let outcome = run.follow(builder, (&settings, approach), &mut told);
     run.finish();
     match outcome {
@@ -175,7 +180,9 @@ pub(crate) fn begin<M: Partition<Scalar: Real> + Clone>(
     }
     if approach.tolerance.is_some() {
         let copy = any_varies(&start.inputs).then(|| mechanism.clone());
-        motion.follow(copy, Course::new(&start.inputs, &start.knots));
+        let paths = Paths::new(&start.paths, None);
+        let knots: Vec<f64> = start.knots.iter().chain(paths.kinks()).copied().collect();
+        motion.follow(copy, Course::new(&start.inputs, &knots));
     }
     Ok(motion)
 }
@@ -281,6 +288,7 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     inputs: &'a [Input],
     controllers: Controllers<M::Scalar>,
     watches: Watches<M::Scalar>,
+    paths: Paths,
     steps_at_once: u64,
     /// Fixed steps that may yet be taken; under error control the solver counts them.
     budget: u64,
@@ -297,9 +305,9 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
     fn new(
         mechanism: &'a mut M,
         motion: Box<dyn Motion<M>>,
-        y: M::State,
-        start: &'a Start,
+        (y, start): (M::State, &'a Start),
         approach: &Approach,
+        paths: Paths,
     ) -> Self {
         let angles: Vec<M::Scalar> = start.angles.iter().map(|&a| Scalar::constant(a)).collect();
         Self {
@@ -310,11 +318,13 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
             steps_at_once: if any_varies(&start.inputs)
                 || !start.watches.is_empty()
                 || !start.contacts.is_empty()
+                || !paths.is_empty()
             {
                 1
             } else {
                 STEPS_BETWEEN_READINGS
             },
+            paths,
             budget: approach.budget.unwrap_or(u64::MAX),
             turns: Turns::new(mechanism, Scalar::constant(0.0), &y, &angles),
             read_at: 0.0,
@@ -379,7 +389,8 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
     /// The joint form at the last state.
     fn linearised(&self, builder: &dyn MotionBuilder<M>, t: f64) -> Option<Linear> {
         let (angles, mut inputs) = (self.angles(), self.inputs.to_vec());
-        inputs.extend(self.controllers.held().map(|(index, value)| Input::constant(index, value)));
+        let held = self.controllers.held().chain(self.paths.inputs());
+        inputs.extend(held.map(|(index, value)| Input::constant(index, value)));
         builder.linearise(self.mechanism, &OperatingPoint { t, y: &self.y, angles: &angles, inputs: &inputs })
     }
 

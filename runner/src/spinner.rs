@@ -48,6 +48,7 @@ impl Spinner {
             controllers: vec![],
             watches: vec![],
             contacts: vec![],
+            paths: vec![],
         }
     }
 }

@@ -1,17 +1,16 @@
 //! Events in a run: what is looked for, and what was found.
 
 use crate::Seen;
+use crate::formula::Formula;
 use gyro_sim::Real;
 use gyro_sim::events::Direction;
 use nanoserde::{DeBin, SerBin};
 
-/// A number of the mechanism, or the difference of two, that crosses a level.
+/// A formula of numbers of the mechanism that crosses a level.
 #[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
 pub struct Watch {
     /// What crosses.
-    pub of: Seen,
-    /// What is subtracted from it.
-    pub minus: Option<Seen>,
+    pub of: Formula,
     /// The level.
     pub level: f64,
     /// Whether crossings from below to the level or above count.
@@ -61,6 +60,15 @@ pub enum What {
         /// Its rate just before, rad/s or m/s.
         before: f64,
         /// Its rate after the impact.
+        after: f64,
+    },
+    /// The velocity of something driven jumps.
+    Kinks {
+        /// Which of [`Start::paths`](crate::Start::paths).
+        path: usize,
+        /// The velocity just before, rad/s or m/s.
+        before: f64,
+        /// That after it.
         after: f64,
     },
     /// A coordinate rests on a stop from now on.
@@ -113,10 +121,9 @@ impl<T: Real> Watches<T> {
     /// What crosses zero; those that do not exist never do.
     pub(crate) fn values(&self, see: impl Fn(Seen) -> T) -> [T; Watch::MOST] {
         std::array::from_fn(|k| {
-            self.watches.get(k).map_or(T::constant(1.0), |watch| {
-                let minus = watch.minus.map_or(T::constant(0.0), &see);
-                see(watch.of) - minus - T::constant(watch.level)
-            })
+            self.watches
+                .get(k)
+                .map_or(T::constant(1.0), |watch| watch.of.value(&see) - T::constant(watch.level))
         })
     }
 

@@ -61,7 +61,7 @@ pub(crate) enum Motion {
 /// A motion has one of `polynomial`, `sinusoid`, `sum`, `product` and `table`.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
-#[schemars(extend("minProperties" = 1, "maxProperties" = 2))]
+#[schemars(extend("minProperties" = 1, "maxProperties" = 3))]
 #[expect(dead_code, reason = "a description")]
 pub(crate) struct Form {
     /// `[c0, c1, c2]`: c0 + c1 t + c2 t².
@@ -78,6 +78,19 @@ pub(crate) struct Form {
     table: Option<String>,
     /// The columns of time and value in the table.
     columns: Option<[String; 2]>,
+    /// What is between the rows of the table; `smooth` unless given.
+    between: Option<Curve>,
+}
+
+/// What joins the rows of a table of a motion.
+#[derive(JsonSchema)]
+#[schemars(rename_all = "snake_case")]
+#[expect(dead_code, reason = "a description")]
+pub(crate) enum Curve {
+    /// The natural cubic spline.
+    Smooth,
+    /// Straight lines, on which the velocity jumps at a row.
+    Linear,
 }
 
 /// amplitude · sin(angular_frequency · t + phase).

@@ -53,12 +53,34 @@ pub struct Vocabulary {
     pub parameters: Vec<(String, f64)>,
     /// Inputs, likewise.
     pub inputs: Vec<(String, f64)>,
-    /// Controllers, with the indices of the inputs that they set.
-    pub controllers: Vec<(String, Vec<usize>)>,
+    /// What sets inputs by itself.
+    pub setters: Vec<Setter>,
     /// Starts, named as the columns of results: `alpha`, `alpha rate`.
     pub starts: Vec<Named<Target>>,
     /// What can be kept.
     pub columns: Vec<Named<Quantity>>,
+}
+
+/// Something of the model that sets inputs in runs: no study can vary these, and none of such a model has derivatives.
+#[derive(Clone, Debug)]
+pub struct Setter {
+    /// What it is.
+    pub kind: SetterKind,
+    /// Its name.
+    pub name: String,
+    /// The indices of the inputs.
+    pub inputs: Vec<usize>,
+}
+
+/// What sets inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SetterKind {
+    /// A sampled controller.
+    Controller,
+    /// A rigid stop or friction that sticks.
+    Contact,
+    /// A motion along straight lines.
+    Lines,
 }
 
 /// Something with a name and a unit.

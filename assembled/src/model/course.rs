@@ -18,6 +18,8 @@ pub(crate) enum Course {
     Sum(Vec<Course>),
     Product(Vec<Course>),
     Table(Spline),
+    /// `[t0, x, v, a]` of `x + v (t − t0) + ½ a (t − t0)²`, and the inputs that these are.
+    Line([f64; 4], [usize; 4]),
 }
 
 /// A body's whole motion.
@@ -45,6 +47,10 @@ impl Course {
             Motion::Sum(motions) => Self::Sum(all(motions)),
             Motion::Product(motions) => Self::Product(all(motions)),
             Motion::Table(spline) => Self::Table(spline.clone()),
+            Motion::Lines(lines) => {
+                let value = |index: usize| gyro_model::to_f64(&model.inputs[index].value);
+                Self::Line(lines.inputs.map(value), lines.inputs)
+            }
         }
     }
 
@@ -71,6 +77,23 @@ impl Course {
                 [u * v, du * v + u * dv, ddu * v + 2.0 * du * dv + u * ddv]
             }),
             Self::Table(spline) => table(&spline.knots, &spline.pieces, t),
+            Self::Line([from, place, rate, acceleration], _) => {
+                polynomial(&[*place, *rate, 0.5 * acceleration], t - from)
+            }
+        }
+    }
+
+    /// An input has changed.
+    pub(crate) fn set_input(&mut self, index: usize, value: f64) {
+        match self {
+            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Table(_) => {}
+            Self::Sum(parts) | Self::Product(parts) => {
+                parts.iter_mut().for_each(|part| part.set_input(index, value));
+            }
+            Self::Line(numbers, inputs) => {
+                let own = numbers.iter_mut().zip(inputs).filter(|(_, input)| **input == index);
+                own.for_each(|(number, _)| *number = value);
+            }
         }
     }
 }
@@ -108,6 +131,12 @@ impl DrivenBody {
             ),
             rotations: motion.iter().flat_map(|motion| &motion.rotations).map(rotation).collect(),
         }
+    }
+
+    /// An input has changed.
+    pub(crate) fn set_input(&mut self, index: usize, value: f64) {
+        let angles = self.rotations.iter_mut().map(|(_, angle)| angle);
+        self.translation.iter_mut().chain(angles).for_each(|course| course.set_input(index, value));
     }
 
     /// Where the body is at a time, how it moves and how that changes.

@@ -57,6 +57,17 @@ impl<T: Number> Lowered<T> {
         })
     }
 
+    /// Sets an input; returns whether there is one of this index.
+    pub(crate) fn set_input(&mut self, index: usize, value: T) -> bool {
+        for row in &mut self.rows {
+            if let Row::Measured { course: Some(course), .. } = row {
+                course.set_input(index, value.to_f64());
+            }
+        }
+        self.scene.driven.iter_mut().for_each(|body| body.set_input(index, value.to_f64()));
+        self.scene.inputs.get_mut(index).map(|(_, present)| *present = value).is_some()
+    }
+
     /// Number of joint rows, normalisations not counted.
     pub(crate) fn n_rows(&self) -> usize {
         self.rows.len()

@@ -96,10 +96,11 @@ pub struct SimulateArgs {
     #[arg(long, value_name = "NAME=[held:|linear:|smooth:]FILE.csv|NUMBER", value_parser = set_input)]
     pub(crate) input: Vec<(String, InputSetting)>,
     /// List when a number crosses a level, beside the [[event]] of the model file: what crosses is a column of the
-    /// run's table or the difference of two; `=` for any direction, `>` for upwards, `<` for downwards; with `:stop`
-    /// the run ends there. Crossings are those of the interpolated motion, to rounding; missed may be two that are
-    /// less than an eighth of a step apart (docs/events.md). May be given several times
-    #[arg(long, value_name = "COLUMN[-COLUMN]{=|>|<}LEVEL[:stop]", value_parser = event)]
+    /// run's table, or a formula of columns and parameters such as `pan rate - 2*tilt`; `=` for any direction, `>` for
+    /// upwards, `<` for downwards; with `:stop` the run ends there. Crossings are those of the interpolated motion, to
+    /// rounding; missed may be two that are less than an eighth of a step apart (docs/events.md). May be given several
+    /// times
+    #[arg(long, value_name = "FORMULA{=|>|<}LEVEL[:stop]", value_parser = event)]
     pub(crate) event: Vec<EventSetting>,
     /// Refuse a model with redundant constraint rows instead of dropping the rows with a warning
     #[arg(long)]
@@ -221,39 +222,29 @@ pub(crate) enum InputSetting {
 pub(crate) struct EventSetting {
     /// As it was written.
     pub(crate) text: String,
-    /// What crosses, and what is subtracted from it.
+    /// What crosses, a formula of columns.
     pub(crate) of: String,
-    pub(crate) minus: Option<String>,
     pub(crate) level: Rational,
     pub(crate) direction: Direction,
     pub(crate) stops: bool,
 }
 
 fn event(text: &str) -> Result<EventSetting, String> {
-    let expected =
-        "a column, =, > or <, and a level were expected, such as hinge=0.5 or \"hinge rate>0:stop\"";
+    let expected = "a column or a formula of some, =, > or <, and a level were expected, such as hinge=0.5 or \"hinge rate>0:stop\"";
     let at = text.find(['=', '<', '>']).ok_or(expected)?;
     let direction = match &text[at..=at] {
         ">" => Direction::Rising,
         "<" => Direction::Falling,
         _ => Direction::Both,
     };
-    let (columns, level) = (text[..at].trim(), &text[at + 1..]);
+    let (of, level) = (text[..at].trim(), &text[at + 1..]);
     let (level, stops) = level.strip_suffix(":stop").map_or((level, false), |level| (level, true));
-    let (of, minus) = columns.split_once('-').map_or((columns, None), |(of, minus)| (of, Some(minus)));
-    if of.trim().is_empty() || minus.is_some_and(|minus| minus.trim().is_empty()) {
+    if of.is_empty() {
         return Err(expected.to_owned());
     }
     let level = parse_decimal(level.trim())
         .ok_or_else(|| format!("`{}` is not a decimal number, such as -0.08 or 8e-2", level.trim()))?;
-    Ok(EventSetting {
-        text: text.to_owned(),
-        of: of.trim().to_owned(),
-        minus: minus.map(|minus| minus.trim().to_owned()),
-        level,
-        direction,
-        stops,
-    })
+    Ok(EventSetting { text: text.to_owned(), of: of.to_owned(), level, direction, stops })
 }
 
 fn set_input(text: &str) -> Result<(String, InputSetting), String> {

@@ -7,6 +7,7 @@ use crate::contacts;
 use crate::controllers;
 use crate::failure::Failure;
 use crate::generate::{Asked, modules};
+use crate::paths;
 use crate::progress::Spinner;
 use crate::scene;
 use crate::write::{self, Known};
@@ -24,6 +25,7 @@ pub(super) fn fmu(args: &FmuArgs) -> Result<(), Failure> {
     let model = scene::read(&args.model)?;
     controllers::say_left_out(&model, "the exported unit");
     contacts::say_left_out(&model, "the exported unit");
+    paths::refuse(&model, "an exported unit")?;
     let mut functions = vec!["solvers".to_owned()];
     if !model.outputs.is_empty() {
         functions.extend(["joint_outputs", "output_derivatives"].map(str::to_owned));

@@ -6,6 +6,7 @@ use crate::contacts;
 use crate::controllers;
 use crate::failure::Failure;
 use crate::files;
+use crate::paths;
 use crate::progress::Spinner;
 use crate::scene;
 use crate::write::{self, Known};
@@ -21,6 +22,7 @@ pub(super) fn wasm(args: &WasmArgs) -> Result<(), Failure> {
     let model = scene::read(&args.model)?;
     controllers::say_left_out(&model, "the exported code");
     contacts::say_left_out(&model, "the exported code");
+    paths::refuse(&model, "exported code")?;
     let exported =
         written(&model, &module.code, numbers(args.precision)).map_err(|e| unwritten(&args.model, &e))?;
     prove(&args.model, (&model, &module), &exported.c)?;

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::progress;
 use crate::scene::Scene;
 use crate::verify::proved;
-use crate::{columns, contacts, controllers, remarks};
+use crate::{columns, contacts, controllers, paths, remarks};
 use gyro_export::Precision;
 use gyro_model::{Model, parse_decimal, to_f64};
 use gyro_runner::{Integrator, Sample, any_varies};
@@ -47,6 +47,7 @@ pub(super) fn live(
     }
     controllers::say_left_out(&scene.model, "--live");
     contacts::say_left_out(&scene.model, "--live");
+    paths::refuse(&scene.model, "--live")?;
     Ok(Live {
         about: serde_json::from_str(&exported.about).map_err(|e| broken(e.to_string()))?,
         module: compiled(&module.name, &exported)?,

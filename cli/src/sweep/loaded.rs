@@ -4,7 +4,7 @@ use super::vocabulary::vocabulary;
 use crate::args::{Effort, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::scene::{self, Scene};
-use crate::{args, contacts, events, files, inputs};
+use crate::{args, events, files, inputs};
 use gyro_model::Model;
 use gyro_runner::Input;
 use gyro_sweep::study::{self, Files, Study, Unreadable, Vocabulary};
@@ -36,7 +36,6 @@ impl Files for Beside<'_> {
 
     fn model(&mut self, path: &str) -> Result<Vocabulary, Failure> {
         let model = scene::read_counting_work(&self.folder.join(path))?;
-        contacts::refuse(&model, "a study")?;
         events::refuse_stops(&model, "a study")?;
         Ok(vocabulary(self.model.insert(model)))
     }

@@ -33,7 +33,8 @@ pub(super) struct Program {
 /// # Errors
 /// A model of which no code can be generated, or code that does not compile.
 pub(super) fn program(study: &Study, scene: &Scene, way: Way, is_native: bool) -> Result<Program, Failure> {
-    let runs = Runs::of(scene).filter(|_| !study.keep.estimate);
+    // Motions with contacts are compared among themselves.
+    let runs = Runs::of(scene).filter(|_| !study.keep.estimate || scene.offers.touches);
     let functions = match (way, runs) {
         (_, Some(runs)) => runs.functions(),
         (_, None) => Functions::of_solvers(),

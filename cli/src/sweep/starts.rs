@@ -62,7 +62,8 @@ fn hanging(model: &Model, joint: usize) -> Option<usize> {
 pub(super) fn assembled(page: &Model, targets: &[Target], values: &[f64]) -> Result<Start, String> {
     let model = model(page, targets, values)?;
     let assembled = model.assemble().map_err(|error| error.to_string())?;
-    Ok(start(&model, &assembled))
+    // Nobody hears of events.
+    Ok(Start { watches: Vec::new(), ..start(&model, &assembled) })
 }
 
 /// How far apart the starts are that derivatives are taken of, in parts of a target's scale. They are differences of
@@ -106,6 +107,8 @@ pub(super) fn are_alike(study: &Study, scene: &Scene) -> bool {
     let is_constant = study.plan.targets.iter().all(|target| !matches!(target, Target::Table(_)));
     approach.coordinates == Coordinates::Joint
         && model.controllers.is_empty()
+        && model.contacts.is_empty()
+        && model.lines().is_empty()
         && gyro_codegen::lacks_joint_coordinates(model).is_none()
         && is_explicit
         && is_tree

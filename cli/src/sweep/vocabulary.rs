@@ -3,8 +3,20 @@
 use crate::columns::{coordinates, outputs};
 use crate::scene::observed;
 use gyro_model::{CoordinateKind, Model, to_f64};
-use gyro_sweep::study::{Named, Vocabulary};
+use gyro_sweep::study::{Named, Setter, SetterKind, Vocabulary};
 use gyro_sweep::{Quantity, Target};
+
+/// What sets inputs in runs.
+fn setters(model: &Model) -> Vec<Setter> {
+    let setter = |kind, name: &str, inputs: Vec<usize>| Setter { kind, name: name.to_owned(), inputs };
+    let controllers = model.controllers.iter();
+    let controllers = controllers.map(|one| setter(SetterKind::Controller, &one.name, one.inputs.clone()));
+    let contacts = model.contacts.iter();
+    let contacts = contacts.map(|one| setter(SetterKind::Contact, &one.name, vec![one.input]));
+    let lines = model.lines().into_iter();
+    let lines = lines.map(|(name, lines)| setter(SetterKind::Lines, name, lines.inputs.to_vec()));
+    controllers.chain(contacts).chain(lines).collect()
+}
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -15,11 +27,7 @@ pub(super) fn vocabulary(model: &Model) -> Vocabulary {
     let mut words = Vocabulary {
         parameters: valued(&model.parameters),
         inputs: valued(&model.inputs),
-        controllers: model
-            .controllers
-            .iter()
-            .map(|controller| (controller.name.clone(), controller.inputs.clone()))
-            .collect(),
+        setters: setters(model),
         ..Vocabulary::default()
     };
     for (index, shown) in coordinates(model).iter().enumerate() {

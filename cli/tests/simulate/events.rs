@@ -62,6 +62,9 @@ name = "equal"
 of = "sine"
 minus = "cosine"
 [[event]]
+name = "formula"
+of = "(sine rate * cosine) - 2*level^2 / 2"
+[[event]]
 name = "turning"
 of = "cosine rate"
 direction = "falling"
@@ -74,12 +77,17 @@ direction = "rising"
 
 const PI: f64 = std::f64::consts::PI;
 
-/// In order of time; sin and cos are equal at π/4 and 5π/4, sin is ½ at π/6 and 5π/6.
-const EXPECTED: [(f64, &str, &str); 7] = [
+/// In order of time; sin and cos are equal at π/4 and 5π/4, sin is ½ at π/6 and 5π/6; cos² is
+/// ¼ at π/3 and its like.
+const EXPECTED: [(f64, &str, &str); 11] = [
     (PI / 6.0, "half", "rises"),
     (PI / 4.0, "equal", "rises"),
+    (PI / 3.0, "formula", "falls"),
+    (2.0 * PI / 3.0, "formula", "rises"),
     (5.0 * PI / 6.0, "half", "falls"),
     (5.0 * PI / 4.0, "equal", "falls"),
+    (4.0 * PI / 3.0, "formula", "falls"),
+    (5.0 * PI / 3.0, "formula", "rises"),
     (11.0 * PI / 6.0, "output", "rises"),
     (2.0 * PI, "turning", "falls"),
     (2.0 * PI + PI / 6.0, "half", "rises"),
@@ -144,8 +152,18 @@ fn what_cannot_be_seen_is_refused() {
     let folder = Folder::new("events-refused");
     fs::write(folder.0.join("oscillators.toml"), OSCILLATORS).unwrap();
     let run = |event| simulate(&folder, &["oscillators.toml", "--engine", "assembled", "--event", event]);
-    refused(&run("sinus=0"), "there is no column `sinus`");
-    refused(&run("sine"), "a column, =, > or <, and a level were expected");
-    refused(&run("sine-=0"), "a column, =, > or <, and a level were expected");
+    refused(&run("sinus=0"), "`sinus` names no column of a run's table and no parameter; write `sine`");
+    refused(&run("2*sine rate - cosinus>0"), "`cosinus` names no column");
+    refused(&run("(sine=0"), "close the parenthesis");
+    refused(&run("2*level=0"), "names nothing that moves");
+    refused(&run("cos(sine)=0"), "the only function is sqrt");
+    refused(&run("sine"), "a column or a formula of some, =, > or <, and a level were expected");
+    refused(&run("sine-=0"), "write a number, a name or a parenthesis after the last operator");
+    let root = run("sqrt(sine - 2)=0");
+    let said = String::from_utf8_lossy(&root.stderr);
+    assert!(
+        root.status.code() == Some(1) && said.contains("the formula of an event is no longer finite"),
+        "{said}"
+    );
     refused(&run("sine=much"), "`much` is not a decimal number");
 }

@@ -9,6 +9,7 @@ mod controllers;
 mod events;
 mod inputs;
 mod interrupted;
+mod kinks;
 mod plants;
 mod refusals;
 mod support;

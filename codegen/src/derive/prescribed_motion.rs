@@ -6,7 +6,7 @@ use crate::expr::differentiate::{Derivative, Direction};
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Mat3, UNIT3, Vec3, Vec4, ZERO3};
-use gyro_model::{BodyMotion, Motion, Spline};
+use gyro_model::{BodyMotion, Lines, Motion, Spline};
 use std::array::from_fn;
 
 impl<'m> System<'m> {
@@ -44,7 +44,21 @@ impl<'m> System<'m> {
                 let table = self.table(spline);
                 self.graph.symbol(Symbol::Table { table, order: 0 })
             }
+            Motion::Lines(lines) => self.line(lines),
         }
+    }
+
+    /// `x + (t − t0) (v + ½ a (t − t0))`, all but the time inputs.
+    fn line(&mut self, lines: &Lines) -> ExprId {
+        let [from, place, rate, acceleration] =
+            lines.inputs.map(|index| self.graph.symbol(Symbol::Input(index)));
+        let (time, half) = (self.graph.symbol(Symbol::Time), self.graph.fraction(1, 2));
+        let since = self.graph.sub(time, from);
+        let bent = self.graph.mul(acceleration, since);
+        let bent = self.graph.mul(half, bent);
+        let mean_rate = self.graph.add(rate, bent);
+        let way = self.graph.mul(since, mean_rate);
+        self.graph.add(place, way)
     }
 
     fn table(&mut self, spline: &'m Spline) -> usize {

@@ -3,6 +3,7 @@
 use super::equations::{Contacts, Forced, Kept};
 use super::guards::{Guards, guards, noise, passed};
 use super::settle::{Change, Ledger, Next, Record};
+use super::small::at;
 use super::{Contact, Error, Phase};
 use crate::contract::Storage;
 use crate::events::{Found, first_falling};
@@ -129,6 +130,19 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     pub fn set_state(&mut self, y: &S) {
         self.solver.set_state(y);
         (self.is_begun, self.pending) = (false, None);
+    }
+
+    /// The rates have jumped at once to those of this state, as by an impulse of what is driven; besides them nothing
+    /// of the state that contacts see may differ. Stops that are touched are resolved together with it when the motion
+    /// is [resolved](Hybrid::resolve) or goes on: those rested on push without rebound, those that are hit at the same
+    /// time by the rates after the jump. Friction has no part in it.
+    pub fn strike(&mut self, y: &S) {
+        let before = self.solver.state().as_ref();
+        let rates = self.solver.dynamics().contacts.map(|contact| at(before, contact.rate));
+        self.ledger.jumped = Some((rates, self.solver.last_step()));
+        self.solver.set_state(y);
+        self.solver.system_has_changed();
+        self.is_begun = false;
     }
 
     /// To be called when the model has changed: which contacts hold is decided anew.

@@ -16,7 +16,8 @@ const UNMET: f64 = 1e-6;
 pub(super) struct Hit<T> {
     /// The direction away from the stop: 1 or −1.
     pub(super) outward: T,
-    pub(super) restitution: T,
+    /// The rate at which it is left, at least.
+    pub(super) rebound: T,
 }
 
 /// The impulses on the stops that are hit, and on those that are rested on; and the rates after them.
@@ -32,7 +33,7 @@ pub(super) fn impulses<T: Real, const N: usize>(
     }
     // The impulses without rebound are a projection of the rates, which only takes energy.
     for hit in hits.iter_mut().flatten() {
-        hit.restitution = zero;
+        hit.rebound = zero;
     }
     by_newton(compliance, rates, &hits).1
 }
@@ -50,9 +51,14 @@ fn by_newton<T: Real, const N: usize>(
     hits: &[Option<Hit<T>>; N],
 ) -> (bool, ([T; N], [T; N])) {
     let zero = T::constant(0.0);
-    let target = |k: usize| hits[k].map_or(zero, |hit| -hit.restitution * rates[k]);
+    let target = |k: usize| hits[k].map_or(zero, |hit| hit.outward * hit.rebound);
     let right = core::array::from_fn(|k| target(k) - rates[k]);
-    let scale = rates.iter().fold(zero, |most, rate| if rate.abs() > most { rate.abs() } else { most });
+    let rebounds = hits.iter().flatten().map(|hit| hit.rebound);
+    let scale = rates
+        .iter()
+        .copied()
+        .chain(rebounds)
+        .fold(zero, |most, rate| if rate.abs() > most { rate.abs() } else { most });
     let [rounding, unmet] = [ROUNDING, UNMET].map(not_below_rounding::<T>);
     let mut best: Option<(T, [T; N], [T; N])> = None;
     let n = hits.iter().flatten().count();

@@ -50,6 +50,8 @@ pub(super) struct Ledger<T, const N: usize> {
     fastest: [T; N],
     /// The rates at the beginning of a step of fixed length whose end is to be decided.
     began: Option<[T; N]>,
+    /// The rates before something driven made them jump, and the length of the last step.
+    pub(super) jumped: Option<([T; N], T)>,
     pub(super) record: Record<T>,
     /// At the last event.
     pub(super) changes: [Change<T>; N],
@@ -66,6 +68,7 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         Self {
             fastest: [zero; N],
             began: None,
+            jumped: None,
             record: Record { impacts: 0, settled: 0, caught: 0, released: 0, lost: zero },
             changes: [Change { hit: None, phases: [Phase::Free; 2] }; N],
             stalled: 0,
@@ -101,27 +104,34 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         let zero = T::constant(0.0);
         let Guards(guards) = guards(equations, model, (t, y), &mut scratch[1]);
         let (contacts, phases) = (equations.contacts, equations.phases);
+        let jumped = self.jumped.take();
+        let length = next.map(|(_, h)| h).or(jumped.map(|(_, h)| h));
         let is_due = |kind: usize, k: usize| {
             guards[kind][k] <= zero
-                || next.is_some_and(|(next, h)| {
-                    let is_it = next.kind == kind && next.contact == k;
-                    is_it || is_as_good_as_reached((&contacts[k], phases[k]), y.as_ref(), guards[kind][k], h)
+                || next.is_some_and(|(next, _)| next.kind == kind && next.contact == k)
+                || length.is_some_and(|h| {
+                    is_as_good_as_reached((&contacts[k], phases[k]), y.as_ref(), guards[kind][k], h)
                 })
         };
         let at_lower: [bool; N] = core::array::from_fn(|k| !phases[k].is_held() && is_due(0, k));
         let at_upper: [bool; N] = core::array::from_fn(|k| !phases[k].is_held() && is_due(1, k));
         let reached: [bool; N] =
             core::array::from_fn(|k| phases[k].is_held() && (is_due(0, k) || is_due(1, k)));
-        // Friction that has brought a coordinate to rest.
+        // Friction that has brought a coordinate to rest; a jump is none of its doing.
         for (k, contact) in contacts.iter().enumerate() {
-            let moves = matches!(phases[k], Phase::Up | Phase::Down);
+            let moves = jumped.is_none() && matches!(phases[k], Phase::Up | Phase::Down);
             let is_it = next.is_some_and(|(next, _)| next.kind == 2 && next.contact == k);
             if moves && (is_it || guards[2][k] < zero) {
                 set(y.as_mut(), contact.rate, zero);
             }
         }
-        let before = contacts.map(|contact| at(y.as_ref(), contact.rate));
-        let hits = self.hits(equations, y.as_mut(), [&at_lower, &at_upper], next.map(|(next, _)| next));
+        // What has rested on a stop does not hit it.
+        let before: [T; N] = core::array::from_fn(|k| match jumped {
+            Some((rates, _)) if rates[k] == zero => zero,
+            _ => at(y.as_ref(), contacts[k].rate),
+        });
+        let touched = [&at_lower, &at_upper];
+        let hits = self.hits(equations, (y.as_mut(), &before), touched, next.map(|(next, _)| next));
         self.collide(equations, (model, t), y, &hits, scratch);
         let chosen = equations.choose(model, (t, y), &reached, &mut scratch[0]);
         self.note(&phases, &equations.phases, |k| {
@@ -136,7 +146,7 @@ impl<T: Real, const N: usize> Ledger<T, N> {
     fn hits<D>(
         &mut self,
         Contacts { contacts, phases, .. }: &Contacts<D, T, N>,
-        y: &mut [T],
+        (y, rates): (&mut [T], &[T; N]),
         [at_lower, at_upper]: [&[bool; N]; 2],
         next: Option<&Next<T>>,
     ) -> [Touched<T>; N] {
@@ -149,8 +159,8 @@ impl<T: Real, const N: usize> Ledger<T, N> {
                 _ if at_upper[k] => (-one, true),
                 _ => return None,
             };
-            let Contact { restitution, coordinate, rate, ends, .. } = contacts[k];
-            let (approach, end) = (-outward * at(y, rate), ends[usize::from(is_upper)]);
+            let Contact { restitution, coordinate, ends, .. } = contacts[k];
+            let (approach, end) = (-outward * rates[k], ends[usize::from(is_upper)]);
             // Steps of fixed length end beyond.
             if next.is_none() && (at(y, coordinate) - end) * outward < zero {
                 set(y, coordinate, end);
@@ -163,7 +173,7 @@ impl<T: Real, const N: usize> Ledger<T, N> {
                 let is_taken_back = self.stalled > 0 && is_own;
                 record.settled += u64::from(is_taken_back);
                 let outward = if is_taken_back { -outward } else { outward };
-                return Some((Hit { outward, restitution: zero }, is_upper));
+                return Some((Hit { outward, rebound: zero }, is_upper));
             }
             let fastest = &mut self.fastest[k];
             *fastest = if approach > *fastest { approach } else { *fastest };
@@ -172,7 +182,8 @@ impl<T: Real, const N: usize> Ledger<T, N> {
             let is_slow = restitution * approach <= T::constant(SLOWEST) * *fastest;
             record.settled += u64::from(is_slow && approach > zero && contacts[k].restitution > zero);
             record.impacts += u64::from(approach > zero);
-            Some((Hit { outward, restitution: if is_slow { zero } else { restitution } }, is_upper))
+            let rebound = if is_slow { zero } else { restitution * approach };
+            Some((Hit { outward, rebound }, is_upper))
         })
     }
 

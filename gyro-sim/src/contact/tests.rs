@@ -217,14 +217,15 @@ fn impulses_are_complementary_and_take_energy() {
         let compliance: [[f64; 4]; 4] = core::array::from_fn(|i| core::array::from_fn(|k| column(i, k)));
         // Rates that the freedoms allow.
         let freedoms: [f64; 4] = core::array::from_fn(|_| random.between(-1.0, 1.0));
-        let rates = core::array::from_fn(|i| (0..rank).map(|r| g[r][i] * freedoms[r]).sum::<f64>());
+        let rates: [f64; 4] = core::array::from_fn(|i| (0..rank).map(|r| g[r][i] * freedoms[r]).sum::<f64>());
         let hits: [Option<Hit<f64>>; 4] = core::array::from_fn(|k| {
             // What is hit is approached; of odd cases some are touched only, and left.
             let towards = if rates[k] > 0.0 { -1.0 } else { 1.0 };
             let is_left = case % 2 == 1 && random.between(0.0, 1.0) < 0.3;
             let restitution = if is_left { 0.0 } else { random.between(0.0, 1.0) };
             let outward = if is_left { -towards } else { towards };
-            (random.between(0.0, 1.0) < 0.7).then_some(Hit { outward, restitution })
+            let rebound = if is_left { 0.0 } else { -outward * restitution * rates[k] };
+            (random.between(0.0, 1.0) < 0.7).then_some(Hit { outward, rebound })
         });
         let outcome = impulses(&compliance, &rates, &hits);
         let (impulses, after) = &outcome;
@@ -237,7 +238,7 @@ fn impulses_are_complementary_and_take_energy() {
                 Some(hit) => {
                     assert!(hit.outward * impulses[k] >= -1e-8, "case {case}: {outcome:?}");
                     assert!(hit.outward * after[k] >= -1e-9, "case {case}: {outcome:?}");
-                    let excess = after[k] + hit.restitution * rates[k];
+                    let excess = after[k] - hit.outward * hit.rebound;
                     let is_complementary = (excess * impulses[k]).abs() < 1e-8;
                     assert!(is_complementary || case % 2 == 1, "case {case}: {outcome:?}");
                 }

@@ -161,7 +161,7 @@ fn shown(value: &Rational) -> String {
 }
 
 /// A unit in rad or rad/s.
-fn size(unit: Unit) -> Rational {
+pub(super) fn size(unit: Unit) -> Rational {
     let turn = || pi() * Rational::from_integer(2.into());
     let per = |n: i64| Rational::new(1.into(), n.into());
     match unit {

@@ -2,12 +2,14 @@
 
 use toml::de::DeTable;
 
+use super::formulas::Named;
+use super::numbers::{named, wrong_within};
 use super::reader::Reader;
-use super::section::Section;
+use super::section::{Item, Section};
 use super::seen::{self, Known};
 use super::tables;
 use crate::validate::{Owner, Place};
-use crate::{Direction, Event, JointCoordinate, Output, Seen};
+use crate::{Direction, Event, Formula, Number, Output};
 
 const KEYS: [&str; 6] = ["name", "of", "minus", "level", "direction", "stop"];
 
@@ -45,18 +47,45 @@ fn event(
     let [of, minus] = ["of", "minus"].map(|key| {
         let item = section.get(key)?;
         let word = item.text(reader, &format!("{key} = \"...\", the name of a column of a run's table"))?;
-        seen::named(reader, item, word, known)
+        formula(reader, item, word, known)
     });
+    let of = of.unwrap_or(Formula::Number(Number::integer(0)));
+    let of = match minus {
+        None => of,
+        Some(minus) => Formula::Difference(Box::new([of, minus])),
+    };
     let direction = section.get("direction").and_then(|item| {
         let known = Direction::NAMES;
         item.choice(reader, ("direction", &known))
     });
     Event {
         name,
-        of: of.unwrap_or(Seen::Coordinate(JointCoordinate { joint: 0, coordinate: 0 })),
-        minus,
+        of,
         level: section.number_or(reader, "level", 0),
         direction: direction.unwrap_or_default(),
         stops: section.get("stop").and_then(|item| item.flag(reader)).unwrap_or(false),
+    }
+}
+
+/// A column, or a formula of columns and parameters.
+fn formula(reader: &mut Reader<'_>, item: Item<'_>, text: &str, known: &Known) -> Option<Formula> {
+    let is_name = |c: char| c.is_alphanumeric() || "_.- ".contains(c);
+    let is_number = text.starts_with(|c: char| c.is_ascii_digit());
+    let found = {
+        let names: Vec<String> = reader.parameters.iter().map(|name| name.to_string()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let parameter = |name: &str| named(reader, name);
+        Named { columns: known, parameter: &parameter, parameters: &names }.formula(text)
+    };
+    match found {
+        Ok(formula) => Some(formula),
+        // Of a single name it can be said what is meant.
+        Err(_) if text.chars().all(is_name) && !is_number && !text.contains(" - ") => {
+            seen::named(reader, item, text, known).map(Formula::Seen)
+        }
+        Err(fault) => {
+            wrong_within(reader, item, text, fault);
+            None
+        }
     }
 }

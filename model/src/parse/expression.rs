@@ -8,7 +8,7 @@ use std::ops::Range;
 use winnow::ascii::{digit0, digit1, multispace0};
 use winnow::combinator::{alt, cut_err, delimited, eof, fail, not, opt, preceded, repeat, terminated};
 use winnow::prelude::*;
-use winnow::stream::LocatingSlice;
+use winnow::stream::{LocatingSlice, Stateful};
 use winnow::token::{any, one_of, take_while};
 
 /// A part of an expression, and where it stands in the string, in bytes.
@@ -64,7 +64,16 @@ pub(super) const MOST_CHARACTERS: usize = 400;
 /// Parentheses within parentheses.
 const DEEPEST: usize = 40;
 
-type Input<'s> = LocatingSlice<&'s str>;
+type Input<'s> = Stateful<LocatingSlice<&'s str>, Names>;
+
+/// What names look like.
+#[derive(Clone, Copy, Debug)]
+enum Names {
+    /// Letters, digits and underscores.
+    Parameters,
+    /// Those of columns of a run's table too: with dots in them, and the word `rate` after a blank.
+    Columns,
+}
 
 impl Unit {
     pub(super) fn is_rate(self) -> bool {
@@ -106,6 +115,18 @@ impl Term {
 /// # Errors
 /// Where in the text it cannot go on.
 pub(super) fn parse(text: &str) -> Result<Term, usize> {
+    parse_with(text, Names::Parameters)
+}
+
+/// The same with names of columns.
+///
+/// # Errors
+/// As [`parse`].
+pub(super) fn parse_formula(text: &str) -> Result<Term, usize> {
+    parse_with(text, Names::Columns)
+}
+
+fn parse_with(text: &str, state: Names) -> Result<Term, usize> {
     let mut depth = 0_usize;
     for (at, c) in text.char_indices() {
         depth = if c == '(' {
@@ -119,7 +140,8 @@ pub(super) fn parse(text: &str) -> Result<Term, usize> {
             return Err(at);
         }
     }
-    delimited(multispace0, sum, eof).parse(LocatingSlice::new(text)).map_err(|error| error.offset())
+    let input = Stateful { input: LocatingSlice::new(text), state };
+    delimited(multispace0, sum, eof).parse(input).map_err(|error| error.offset())
 }
 
 fn sum(input: &mut Input<'_>) -> ModalResult<Term> {
@@ -216,8 +238,16 @@ fn number<'s>(input: &mut Input<'s>) -> ModalResult<&'s str> {
 }
 
 fn name<'s>(input: &mut Input<'s>) -> ModalResult<&'s str> {
-    let first = any.verify(|c: &char| c.is_alphabetic());
-    (first, take_while(0.., |c: char| c.is_alphanumeric() || c == '_')).take().parse_next(input)
+    let first = || any.verify(|c: &char| c.is_alphabetic());
+    let word = || (first(), take_while(0.., |c: char| c.is_alphanumeric() || c == '_')).void();
+    match input.state {
+        Names::Parameters => word().take().parse_next(input),
+        Names::Columns => {
+            let further = ('.', take_while(1.., |c: char| c.is_alphanumeric() || c == '_')).void();
+            let rate = (' ', "rate", not(letter)).void();
+            (word(), opt(further), opt(rate)).take().parse_next(input)
+        }
+    }
 }
 
 fn letter(input: &mut Input<'_>) -> ModalResult<char> {

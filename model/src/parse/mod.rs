@@ -9,6 +9,7 @@ mod driven;
 mod events;
 mod expression;
 mod forces;
+pub(crate) mod formulas;
 mod joint_start;
 mod joints;
 mod kinds;

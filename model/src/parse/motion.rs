@@ -11,7 +11,7 @@ use crate::{Motion, Number};
 
 /// The forms of a motion; each excludes the others.
 const FORMS: [&str; 5] = ["polynomial", "sinusoid", "sum", "product", "table"];
-const KEYS: [&str; 6] = ["polynomial", "sinusoid", "sum", "product", "table", "columns"];
+const KEYS: [&str; 7] = ["polynomial", "sinusoid", "sum", "product", "table", "columns", "between"];
 const SINUSOID_KEYS: [&str; 5] = ["amplitude", "angular_frequency", "frequency_hz", "phase", "phase_deg"];
 
 /// No motion: the constant zero.
@@ -51,6 +51,7 @@ fn form(reader: &mut Reader<'_>, item: Item<'_>, table: &DeTable<'_>) -> Option<
     };
     if form != "table" {
         section.refuse(reader, "columns", "only a table has columns", "remove `columns`");
+        section.refuse(reader, "between", "only a table has something between its rows", "remove `between`");
     }
     let value = section.get(form)?;
     match form {
@@ -58,7 +59,7 @@ fn form(reader: &mut Reader<'_>, item: Item<'_>, table: &DeTable<'_>) -> Option<
         "sinusoid" => sinusoid(reader, value),
         "sum" => several(reader, value).map(Motion::Sum),
         "product" => several(reader, value).map(Motion::Product),
-        _ => table::read(reader, &section, value).map(Motion::Table),
+        _ => table::read(reader, &section, value),
     }
 }
 

@@ -11,7 +11,7 @@ use super::{
     bodies, contacts, controllers, couplings, events, forces, joints, outputs, parameters, point_masses,
 };
 use crate::validate::{Owner, Place};
-use crate::{Between, Method, Model, Rational, Simulation, to_f64};
+use crate::{Between, Method, Model, Rational, Simulation, lines, to_f64};
 
 const KEYS: [&str; 17] = [
     "format",
@@ -46,12 +46,16 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let counts_work = page.get("count_work").and_then(|item| item.flag(reader)).unwrap_or(true);
     let functions = functions(reader, &page);
     let simulation = simulation(reader, &page);
-    let (bodies, point_masses): (Vec<_>, Vec<_>) = bodies::read(reader, &page).into_iter().unzip();
+    let (mut bodies, point_masses): (Vec<_>, Vec<_>) = bodies::read(reader, &page).into_iter().unzip();
     let joints = joints::read(reader, &page);
     let couplers = couplings::couplers(reader, &page);
-    let drivers = couplings::drivers(reader, &page);
+    let mut drivers = couplings::drivers(reader, &page);
     let mut forces = forces::read(reader, &page);
-    let mut contacts = contacts::read(reader, &page, inputs.len());
+    let n_inputs = inputs.len() + lines::n_inputs((&mut bodies, &mut drivers));
+    let mut contacts = contacts::read(reader, &page, n_inputs);
+    let taken = contacts.iter().map(|contact| &contact.name).chain(parameters.iter().map(|p| &p.name));
+    let taken: Vec<&str> = taken.map(String::as_str).chain(parameters::OWN_FIELDS).collect();
+    lines::add_inputs((&mut bodies, &mut drivers), &taken, (&mut inputs, &mut between));
     for contact in &contacts {
         inputs.push(contact.own_input());
         between.push(Between::default());

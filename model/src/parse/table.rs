@@ -1,27 +1,36 @@
-//! Tables of a motion: two columns of a CSV file, joined by a smooth curve.
+//! Tables of a motion: two columns of a CSV file, joined by a smooth curve or by straight lines.
 
 use super::names;
 use super::reader::Reader;
 use super::section::{Item, Section};
-use crate::Spline;
+use crate::{Lines, Motion, Spline};
 
 /// A table that cannot be used: what is wrong, a few words for the place in the model file, and what to do.
 type Refusal = [String; 3];
 
 /// Reads the table that a motion names, through the caller's `load`.
-pub(super) fn read(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_>) -> Option<Spline> {
+pub(super) fn read(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_>) -> Option<Motion> {
+    let is_smooth = match section.get("between") {
+        None => true,
+        Some(item) => item.choice(reader, ("way between rows", &[("smooth", true), ("linear", false)]))?,
+    };
     let columns = section.get("columns").map(|item| columns(reader, item));
     let path = item.text(reader, "table = \"file.csv\"")?;
     let columns = match columns {
         Some(columns) => Some(columns?),
         None => None,
     };
-    let spline = reader.load(path).map_err(|reason| not_loaded(path, &reason)).and_then(|text| {
+    let motion = reader.load(path).map_err(|reason| not_loaded(path, &reason)).and_then(|text| {
         let points = points(path, &text, columns)?;
         let help = "write increasing times, and values of moderate size";
-        Spline::natural(path.to_owned(), &points).map_err(|reason| refusal(path, &reason, help))
+        let motion = if is_smooth {
+            Spline::natural(path.to_owned(), &points).map(Motion::Table)
+        } else {
+            Lines::through(path.to_owned(), &points).map(Motion::Lines)
+        };
+        motion.map_err(|reason| refusal(path, &reason, help))
     });
-    spline.map_err(|words| item.wrong(reader, words)).ok()
+    motion.map_err(|words| item.wrong(reader, words)).ok()
 }
 
 fn columns<'t>(reader: &mut Reader<'_>, item: Item<'t>) -> Option<[&'t str; 2]> {

@@ -6,6 +6,7 @@ mod correction;
 mod course;
 mod feed;
 mod independent;
+mod kink;
 mod lens;
 mod linearise;
 mod linearising;

@@ -3,6 +3,7 @@
 use super::contract::Motion;
 use super::course::Course;
 use super::feed::{Around, Fed};
+use super::kink::struck;
 use super::lens::Lens;
 use crate::approach::{Approach, Correction as Keeping, Integrator};
 use gyro_sim::integrate::Method;
@@ -140,6 +141,12 @@ macro_rules! motion {
                 }
                 dynamics.enter(&course, 0.0);
                 self.1 = Some(course);
+                self.0.system_has_changed();
+            }
+            fn strike(&mut self, before: [&M; 2], after: [&M; 2]) {
+                let at = (self.0.time(), self.0.state());
+                let y = struck(&self.0.dynamics().lens, at, [before, after]);
+                self.0.set_state(&y);
                 self.0.system_has_changed();
             }
             fn statistics(&self) -> Statistics {

@@ -3,6 +3,7 @@
 use super::contract::Motion;
 use super::course::Course;
 use super::feed::{Around, Fed};
+use super::kink::struck;
 use super::lens::Lens;
 use super::moving::control;
 use crate::approach::{Approach, Integrator};
@@ -182,6 +183,12 @@ where
         self.hybrid.dynamics_mut().enter(&course, 0.0);
         self.course = Some(course);
         self.hybrid.system_has_changed();
+    }
+
+    fn strike(&mut self, before: [&M; 2], after: [&M; 2]) {
+        let at = (self.hybrid.time(), self.hybrid.state());
+        let x = struck(&Joint, at, [before, after]);
+        self.hybrid.strike(&x);
     }
 
     fn resolve(&mut self, mechanism: &M, tell: &mut dyn FnMut(What)) {

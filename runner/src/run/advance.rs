@@ -1,7 +1,8 @@
 //! From one sample to the next.
 
 use super::{Event, Halt, Run, Told};
-use crate::{Occurrence, Segment};
+use crate::input::set;
+use crate::{Occurrence, Segment, What};
 use gyro_sim::{Error, Partition, Real, Scalar};
 use std::io;
 use std::time::Instant;
@@ -89,6 +90,7 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
         if self.watches.end.is_some_and(|end| end < t) {
             return Ok(());
         }
+        self.pass_kinks(t, |what| found.push(Occurrence { t, what }))?;
         self.motion.resolve(self.mechanism, &mut |what| found.push(Occurrence { t, what }));
         if !found.is_empty() {
             self.read_turns(t)?;
@@ -111,5 +113,26 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
         told: &mut Told<F>,
     ) -> Result<(), Halt> {
         self.watch_step(from)?.iter().try_for_each(|found| Ok((told.tell)(Event::Occurred(found))?))
+    }
+
+    /// Has the velocities jump of what is driven along straight lines, where one of them has a kink now.
+    fn pass_kinks(&mut self, t: f64, mut tell: impl FnMut(What)) -> Result<(), Error> {
+        if !self.paths.is_due::<M::Scalar>(t) {
+            return Ok(());
+        }
+        let earlier = self.paths.clone();
+        let Some(slopes) = self.paths.pass::<M::Scalar>(t) else { return Ok(()) };
+        self.set_by_itself(t)?;
+        set(self.mechanism, self.inputs, t);
+        let [before, after] = [&earlier, &self.paths].map(|paths| paths.pushed(self.mechanism, t, &slopes));
+        self.motion.strike(before.each_ref(), after.each_ref());
+        self.paths.set(self.mechanism);
+        for (index, value) in self.paths.inputs() {
+            self.motion.set_input(index, value);
+        }
+        for (path, [before, after]) in slopes.into_iter().enumerate().filter(|(_, [a, b])| a != b) {
+            tell(What::Kinks { path, before, after });
+        }
+        Ok(())
     }
 }

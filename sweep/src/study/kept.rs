@@ -1,7 +1,7 @@
 //! What is kept of each scenario.
 
 use super::reader::{Item, Reader, Section, instead};
-use super::{Named, RunOptions, Vocabulary};
+use super::{Named, RunOptions, SetterKind, Vocabulary};
 use crate::{Keep, Passage, Quantity, Target};
 use gyro_runner::{Coordinates, Integrator};
 
@@ -102,13 +102,24 @@ impl Kept {
         } else if is_rounding {
             let help = "keep `constraint violation` as a series";
             Some(["a constraint's violation is rounding", "it has no derivatives", help])
-        } else if !vocabulary.controllers.is_empty() {
-            let help = "remove this, or take [[controller]] out of the model file";
-            Some([
-                "there are no derivatives of loops that sampled controllers close",
-                "of a closed loop",
-                help,
-            ])
+        } else if let Some(setter) = vocabulary.setters.first() {
+            Some(match setter.kind {
+                SetterKind::Controller => [
+                    "there are no derivatives of loops that sampled controllers close",
+                    "of a closed loop",
+                    "remove this, or take [[controller]] out of the model file",
+                ],
+                SetterKind::Contact => [
+                    "there are no derivatives of motions with rigid stops or friction that sticks",
+                    "of a motion in phases",
+                    "remove this, or write [[contact]] as [[force]] of kind \"stop\" or \"coulomb\", which are smooth",
+                ],
+                SetterKind::Lines => [
+                    "there are no derivatives of motions whose drivers jump in velocity",
+                    "of a motion along straight lines",
+                    "remove this, or take `between` out of the model file's table",
+                ],
+            })
         } else if run.coordinates != Coordinates::Joint {
             let help = "write run = { coordinates = \"joint\" }";
             Some(["sensitivities are computed in joint coordinates", "in maximal ones", help])

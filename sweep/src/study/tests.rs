@@ -8,11 +8,21 @@ use gyro_runner::Between;
 
 struct Bench;
 
+fn setters(path: &str) -> Vec<Setter> {
+    let kind = match path {
+        "closed.toml" => SetterKind::Controller,
+        "touching.toml" => SetterKind::Contact,
+        "kinked.toml" => SetterKind::Lines,
+        _ => return Vec::new(),
+    };
+    vec![Setter { kind, name: "hold".to_owned(), inputs: vec![1] }]
+}
+
 impl Files for Bench {
     type Error = String;
 
     fn model(&mut self, path: &str) -> Result<Vocabulary, String> {
-        if !["m.toml", "closed.toml"].contains(&path) {
+        if !["m.toml", "closed.toml", "touching.toml", "kinked.toml"].contains(&path) {
             return Err(format!("no {path}"));
         }
         let named = |name: &str, of| Named { name: name.to_owned(), unit: "rad".to_owned(), of };
@@ -20,7 +30,7 @@ impl Files for Bench {
         Ok(Vocabulary {
             parameters: vec![("mass".to_owned(), 2.0), ("length".to_owned(), 0.5)],
             inputs: vec![("motor".to_owned(), 0.0), ("brake".to_owned(), 0.0)],
-            controllers: if path == "closed.toml" { vec![("hold".to_owned(), vec![1])] } else { Vec::new() },
+            setters: setters(path),
             starts: vec![start],
             columns: vec![
                 named("hinge", Quantity::Position(0)),
@@ -202,6 +212,14 @@ fn mistakes_name_their_line_and_the_cure() {
                 .replace("m.toml", "closed.toml"),
             "s.toml:5",
             "the controller `hold` sets this input",
+        ),
+        (sensitive("", "uniform = [0, 1]").replace("m.toml", "touching.toml"), "s.toml:4", "rigid stops"),
+        (sensitive("", "uniform = [0, 1]").replace("m.toml", "kinked.toml"), "s.toml:4", "jump in velocity"),
+        (
+            format!("{HEAD}{KEEP}vary = [{{ input = \"brake\", values = [1] }}]")
+                .replace("m.toml", "touching.toml"),
+            "s.toml:5",
+            "the contact `hold` sets this input",
         ),
     ] {
         let Err(Unreadable::Study(mistakes)) = read("s.toml", &text, &mut Bench) else {

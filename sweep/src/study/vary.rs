@@ -1,7 +1,7 @@
 //! What varies.
 
 use super::reader::{Item, Reader, Section, instead};
-use super::{Files, Span, Vocabulary};
+use super::{Files, Setter, SetterKind, Span, Vocabulary};
 use crate::draw::{Distribution, Draw, cholesky};
 use crate::plan::{Axis, Target};
 
@@ -243,11 +243,21 @@ fn find(
     };
     let set = found.as_ref().and_then(|(target, ..)| {
         let Target::Input(index) = target else { return None };
-        vocabulary.controllers.iter().find(|(_, inputs)| inputs.contains(index))
+        vocabulary.setters.iter().find(|setter| setter.inputs.contains(index))
     });
-    if let Some((controller, _)) = set {
-        let message = format!("the controller `{controller}` sets this input");
-        let help = "vary a parameter that the controller's gains or set points are written with";
+    if let Some(Setter { kind, name, .. }) = set {
+        let (what, help) = match kind {
+            SetterKind::Controller => {
+                ("controller", "vary a parameter that the controller's gains or set points are written with")
+            }
+            SetterKind::Contact => {
+                ("contact", "vary a parameter that the contact's numbers are written with")
+            }
+            SetterKind::Lines => {
+                ("motion of", "vary something else: the rows of its table are what they are")
+            }
+        };
+        let message = format!("the {what} `{name}` sets this input");
         reader.wrong(span, [&message, "set already", help]);
         return None;
     }

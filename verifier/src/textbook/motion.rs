@@ -31,6 +31,12 @@ impl<F: Field> Scope<'_, F> {
                 parts.iter().fold(self.one.clone(), |product, part| product * self.prescribed(part, t))
             }
             Motion::Table(table) => self.spline(table, t),
+            Motion::Lines(lines) => {
+                let [from, place, rate, acceleration] =
+                    lines.inputs.map(|index| Jet::constant(self.point.inputs[index].clone()));
+                let u = t - &from;
+                place + rate * &u + &self.half * &(acceleration * &(&u * &u))
+            }
         }
     }
 

@@ -188,8 +188,8 @@ fn dependent_impulses_are_told_in_single_precision() {
         let freedoms: [f64; 4] = core::array::from_fn(|_| random.between(-1.0, 1.0));
         let rates: [f64; 4] = core::array::from_fn(|i| (0..rank).map(|r| g[r][i] * freedoms[r]).sum());
         let restitution = random.between(0.0, 1.0);
-        let hits = rates.map(|rate| Some(Hit { outward: -rate.signum(), restitution }));
-        let of_single = |hit: Hit<f64>| Hit { outward: hit.outward as f32, restitution: restitution as f32 };
+        let hits = rates.map(|rate| Some(Hit { outward: -rate.signum(), rebound: restitution * rate.abs() }));
+        let of_single = |hit: Hit<f64>| Hit { outward: hit.outward as f32, rebound: hit.rebound as f32 };
         let single = impulses(
             &compliance.map(|row| row.map(|x| x as f32)),
             &rates.map(|rate| rate as f32),
