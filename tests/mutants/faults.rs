@@ -141,7 +141,7 @@ const FAULTS: &[Fault] = &[
     fault("solve/ldl.rs", "four-bar", "x = «graph.sub(x, product)»;", "graph.add(x, product)"),
     fault("joint_space/loops.rs", "four-bar", "vec![first, «graph.div(area, first)»]", "area"),
     // The projection in the metric of the masses.
-    fault("solve/forward_dynamics.rs", "four-bar", "loop_closure::close(graph, kinematics, tree, (&self.loop_rows, «&changes»), &self.cut_rotors, free)", "&kinematics.gamma"),
+    fault("solve/forward_dynamics.rs", "four-bar", "(&self.loop_rows, «&changes»),", "&kinematics.gamma"),
     fault("solve/forward_dynamics.rs", "pair", "let free = «tree.respond(graph, &excitation).motions»;", "excitation.forced.clone()"),
     fault("solve/motion_subspace.rs", "pair", "accelerated(graph, «&changes[self.rows.clone()]», &self.forced)", "changes"),
     fault("solve/reduced_mass_matrix.rs", "gyroscope-combined-offsets", "let linear = «graph.mul(body.mass, linear)»;", "linear"),

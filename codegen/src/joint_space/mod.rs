@@ -4,8 +4,8 @@
 //! `layout` orders the coordinates of a spanning tree, but for those that are `determined` by couplers, drivers and
 //! loops; `link_kinematics` says how a body moves on its carrier, `whole_angles` where it is, and `maps` leads to
 //! maximal coordinates and back. `closure` has the rows of joints that close loops, `loops` how rates keep these
-//! closed, `embedding` how all rates of the tree follow fewer unknowns, and `cut_armatures` what armatures of cut joints
-//! resist. `coordinates` has all that is derived of
+//! closed, `embedding` how all rates of the tree follow fewer unknowns, and `cut_armatures` what armatures of cut
+//! joints resist. `coordinates` has all that is derived of
 //! them, and `forces` what acts along them. `dynamics` solves for the rates' rates in several ways, `planar` for those
 //! of planar mechanisms, `axis_dynamics` in frames of joints, seen as `elementary_joints`: in `axis_frames` that
 //! suit them, between which `screw_moves` lead, from the base inertial parameters among their `mass_moments`, with an

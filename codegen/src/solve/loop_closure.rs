@@ -17,9 +17,9 @@ pub fn gradient(kinematics: &Kinematics, row: usize) -> Vec<SpatialVector> {
     columns.map(|c| SpatialVector { t: [c[0], c[1], c[2]], rho: [c[3], c[4], c[5]] }).collect()
 }
 
-/// The armature J of a joint that closes a loop, which resists `b·v̇` (what it takes while no body accelerates is one of
-/// the applied forces). With `c = √J b` and `κ = c·v̇` the bodies feel `−cᵀ κ`: it is a row with the multiplier κ that
-/// yields by κ.
+/// The armature J of a joint that closes a loop, which resists `b·v̇` (what it takes while no body accelerates is one
+/// of the applied forces). With `c = √J b` and `κ = c·v̇` the bodies feel `−cᵀ κ`: it is a row with the multiplier κ
+/// that yields by κ.
 #[derive(Clone, Debug)]
 pub struct CutRotor(
     /// c of each moving body.
@@ -45,8 +45,8 @@ impl CutRotor {
     }
 }
 
-/// Corrects the motions of the free tree, so that these rows change as `rates` of all rows say, against the armatures of
-/// joints that close loops; returns the multipliers too.
+/// Corrects the motions of the free tree, so that these rows change as `rates` of all rows say, against the armatures
+/// of joints that close loops; returns the multipliers too.
 pub fn close(
     graph: &mut Graph,
     kinematics: &Kinematics,

@@ -221,7 +221,7 @@ pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
                 Reading::Orientation(numbers) => numbers.to_vec(),
                 _ => return None,
             },
-            Freedom::Turn(on) => vec![case.point.turn_reference(case.model, case.turn(on)?).clone()],
+            Freedom::Turn(on) => vec![*case.point.turn_reference(case.model, case.turn(on)?)],
             Freedom::Body { moving_body } => {
                 [case.point.position(moving_body), case.point.velocity(case.model, moving_body)].concat()
             }
