@@ -23,8 +23,8 @@ const HARMLESS: &[(&str, &str)] = &[(
 )];
 
 /// Changes that do no harm and save time: factoring is given up early, mechanisms with one or two rates have no
-/// Jacobian, nor those with many that do not ask for it, and those with more than two one after the other no mass matrix
-/// in joint frames. File, place and what is
+/// Jacobian, nor those with many that do not ask for it, and those with more than two one after the other no mass
+/// matrix in joint frames. File, place and what is
 /// there instead.
 #[allow(dead_code, reason = "only the build script changes texts")]
 const QUICKER: [(&str, &str, &str); 3] = [

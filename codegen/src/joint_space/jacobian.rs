@@ -22,8 +22,8 @@ use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::normal_form::normal_form;
 
 /// Beyond this many rates expressions are not differentiated: a chain of skewed axes takes 16500 operations for six
-/// rates and 29300 for eight. Larger trees go by recursion ([`super::large_jacobian`]); larger mechanisms with loops, or
-/// with joints that are not made of turns and displacements, have no Jacobian.
+/// rates and 29300 for eight. Larger trees go by recursion ([`super::large_jacobian`]); larger mechanisms with loops,
+/// or with joints that are not made of turns and displacements, have no Jacobian.
 const MAX_RATES: usize = 8;
 
 /// The derivatives of f, row by row.

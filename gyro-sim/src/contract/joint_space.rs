@@ -56,10 +56,10 @@ pub trait JointSpace: Mechanism {
 
 /// The derivatives of the joint form `ẋ = f(t, x)`.
 ///
-/// Generated trees can have them, and mechanisms with loops, or with joints that are not made of turns and displacements
-/// (screws, rods, points on a line), of up to eight rates; not where a third derivative of a table would be needed. They
-/// are the derivatives of the emitted functions as they stand, at unit Euler parameters in directions too in which the
-/// state cannot change (across their unit sphere).
+/// Generated trees can have them, and mechanisms with loops, or with joints that are not made of turns and
+/// displacements (screws, rods, points on a line), of up to eight rates; not where a third derivative of a table would
+/// be needed. They are the derivatives of the emitted functions as they stand, at unit Euler parameters in directions
+/// too in which the state cannot change (across their unit sphere).
 pub trait JointJacobian: JointSpace {
     /// ∂f/∂x, n × n for a joint state of n numbers, row by row.
     type Jacobian: Storage<Self::Scalar>;
