@@ -8,6 +8,7 @@
 
 mod colours;
 mod columns;
+mod kernel;
 mod loops;
 mod orbits;
 mod rolled;
@@ -15,8 +16,8 @@ mod shift;
 mod signs;
 mod terms;
 
+pub use kernel::{At, Before, Local, Repeat, Repetition, Rolled, Row, Shape};
 pub use loops::Direction;
-pub use rolled::{At, Before, Local, Repeat, Repetition, Rolled, Row, Shape};
 
 use crate::effort::Effort;
 use crate::expr::graph::{ExprId, Graph, Node};

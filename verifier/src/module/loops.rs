@@ -77,8 +77,8 @@ impl Reader<'_> {
         self.bind(name, Known::Table(self.tables.len() - 1), table.span())
     }
 
-    /// `for i in 0..12 { ... }` or `for i in (0..12).rev() { ... }`: bindings, then rows that are stored. Or nothing but
-    /// results that are stored.
+    /// `for i in 0..12 { ... }` or `for i in (0..12).rev() { ... }`: bindings, then rows that are stored. Or nothing
+    /// but results that are stored.
     fn repeated(&mut self, repeated: &ExprForLoop) -> Result<(), Refusal> {
         let Pat::Ident(name) = &*repeated.pat else { return Err(refused(&repeated.pat)) };
         let name = name.ident.to_string();
