@@ -106,8 +106,7 @@ impl Stepper {
         by_cargo: Option<Many>,
     ) -> Result<Self, NotCompiled> {
         let n_state = dynamics.n_x + dynamics.n_u;
-        let states = (0..rows.unwrap_or(1)).map(|row| dynamics.whole(&states[row * n_state..][..n_state]));
-        let states: Vec<_> = states.collect();
+        let states: Vec<_> = states.chunks(n_state.max(1)).map(|state| dynamics.whole(state)).collect();
         let is_tree = dynamics.mechanism.joint_layout().closure_rows.is_empty();
         let many = match by_cargo {
             _ if !is_tree || states.len() < 2 => None,

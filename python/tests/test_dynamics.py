@@ -5,7 +5,7 @@ import warnings
 
 import numpy as np
 import pytest
-from conftest import MODELS, ROOT
+from conftest import MODELS
 
 import gyro_sim as gyro
 
@@ -214,12 +214,3 @@ def test_sensitivities_agree_with_differences(pendulum):
     assert np.allclose(states[-1], run.state(0.5), atol=1e-9)
     with pytest.raises(gyro.RequestError, match="no parameter `width`"):
         pendulum.sensitivities(times, ["width"])
-
-
-def test_a_mechanism_without_freedom_has_empty_states():
-    cam = gyro.load(ROOT / "tests/models/cam.toml")
-    state = cam.start()
-    assert state.shape == (0,)
-    assert [matrix.shape[0] for matrix in cam.linearize(state)[:2]] == [0, 0]
-    assert cam.stepper(1e-3, np.empty((5, 0))).step().shape == (5, 0)
-    assert cam.simulate(0.01).verdict.grade == "good"
