@@ -58,6 +58,7 @@ pub fn start_of(model: &Model) -> Start {
         watches: Vec::new(),
         contacts: Vec::new(),
         knots: Vec::new(),
+        paths: Vec::new(),
         observed_bodies: (0..model.coordinate_bodies().len()).collect(),
         positions: start.q,
         velocities: start.v,
