@@ -62,7 +62,7 @@ pub trait Motion<M: Mechanism> {
     where
         M: Sized;
     /// The velocities of what is driven jump at once: the mechanism as it is before and as it is after, each also with
-    /// large accelerations of what is driven, as [`Paths::pushed`](crate::path::Paths) has them.
+    /// large accelerations of what is driven, as `Paths::pushed` has them.
     fn strike(&mut self, before: [&M; 2], after: [&M; 2]);
     /// Decides what happens at the end of the last step, or at once, where anything touches; `tell` hears of it.
     fn resolve(&mut self, _mechanism: &M, _tell: &mut dyn FnMut(What)) {}
