@@ -294,7 +294,7 @@ fn legged() -> Pair<Legged<f64>, Legged<Fine>> {
     }
 }
 
-/// By state, time, inputs and parameters; of three rates, of eleven with a ball joint on a moving base, and of twelve with
+/// By state, time, inputs and parameters; of three rates, of eleven with a ball on a moving base, and of twelve with
 /// a floating base.
 #[test]
 fn derivatives_of_the_joint_form_are_limits_of_differences() {
