@@ -299,6 +299,7 @@ fn facts(system: &System) -> Facts {
     };
     Facts {
         joint_coordinates: obstacle(model).is_none(),
+        charts: Partition::covers(system),
         outputs_of_motion: model.outputs.iter().any(tells_motion),
         outputs_of_multipliers: model.outputs.iter().any(tells_multipliers),
         work_of_loops: is_driven && model.has_work() && !system.loop_closure_rows().is_empty(),

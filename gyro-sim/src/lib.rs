@@ -115,6 +115,7 @@ pub mod fused;
 #[cfg(feature = "generated")]
 pub mod generated;
 pub mod integrate;
+pub mod joint_partition;
 #[cfg(feature = "lanes")]
 pub mod lanes;
 pub mod pivoting;

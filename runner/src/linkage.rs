@@ -2,7 +2,6 @@
 //! are a tree, the knee closes the loop. For the tests of this crate.
 
 use gyro_mechanisms::four_bar::FourBar;
-use gyro_sim::pivoting::Pivots;
 use gyro_sim::{
     Buffers, Clearance, CorrectedDynamics, Description, Dynamics, Energy, Error, JointBuffers, JointLayout,
     JointPlace, JointSpace, Kinematics, Mechanism, Partition, Projection, Real, Scalar, Terms,
@@ -234,7 +233,7 @@ impl<T: Scalar> Mechanism for Linkage<T> {
 }
 
 impl<T: Real> Partition for Linkage<T> {
-    type Independent = Pivots<20, 21>;
+    type Independent = ();
 
     fn independent(&self, t: T, y: &[T; 39]) -> Self::Independent {
         self.generated.independent(t, y)

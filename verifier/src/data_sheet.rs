@@ -224,8 +224,12 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
         ),
         (lacks("Partition"), "the coordinate partition (functions = [\"partition\"] asks for it)"),
         (
-            module.implements("Partition") && module.n_charts.is_none(),
+            module.implements("Partition") && module.n_charts.is_none() && !has_joints,
             "charts (for trees of revolute, spherical and fixed joints: the run time pivots)",
+        ),
+        (
+            module.implements("Partition") && module.n_charts.is_none() && has_joints,
+            "charts (for trees of revolute, spherical and fixed joints: the partition goes through joint coordinates)",
         ),
         (model.gravity.iter().all(Number::is_zero), "gravity"),
         (!model.is_worked_on(), "the work of non-conservative forces (there are none)"),

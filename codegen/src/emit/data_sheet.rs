@@ -260,8 +260,12 @@ fn left_out(equations: &Equations) -> Vec<String> {
         is_possible.then(|| format!("{what} (functions = [\"{name}\"] asks for it)"))
     }));
     if equations.functions.has(Group::Partition) && equations.charts.is_none() {
-        left_out
-            .push("charts (for trees of revolute, spherical and fixed joints: the run time pivots)".into());
+        let instead = if equations.joint_space.is_some() {
+            "the partition goes through joint coordinates"
+        } else {
+            "the run time pivots"
+        };
+        left_out.push(format!("charts (for trees of revolute, spherical and fixed joints: {instead})"));
     }
     if model.gravity.iter().all(gyro_model::Number::is_zero) {
         left_out.push("gravity".into());

@@ -37,7 +37,7 @@ impl Partition {
 
     /// Whether charts cover the mechanism: trees of revolute, spherical and fixed joints, and nothing that closes a
     /// loop.
-    fn covers(system: &System) -> bool {
+    pub fn covers(system: &System) -> bool {
         let covered = |attachment: Attachment| match attachment {
             Attachment::Free | Attachment::Constrained => true,
             Attachment::Joint { joint, .. } => {

@@ -9,7 +9,8 @@ use core::fmt::Debug;
 ///
 /// Generated trees whose partition is unrolled have it for packs of lanes too, each lane with a choice of its own.
 pub trait Partition: Mechanism<Scalar: Lanes> {
-    /// Which coordinates are independent.
+    /// Which coordinates are independent; `()` where those of a tree of joints always are
+    /// ([`joint_partition`](crate::joint_partition)).
     type Independent: Clone + Debug + PartialEq;
 
     /// The best choice at a state.

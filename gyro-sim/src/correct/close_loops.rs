@@ -1,6 +1,7 @@
 //! The correction of loops in joint coordinates.
 
 use super::{CONVERGED_EPSILONS, Correction, FARTHEST, MAX_ITERATIONS, check_finite, normalise, reach};
+use crate::pivoting::is_resolvable;
 use crate::violation::{Violation, closure_violation};
 use crate::{
     ByDuals, Clearance, Coordinate, Error, Joint, JointLayout, JointPlace, JointSpace, Mechanism, Ode, Owner,
@@ -81,11 +82,7 @@ impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
         check_finite(t, x.as_ref())?;
         let mut worst = self.worst(mechanism, t, x);
         for _ in 0..MAX_ITERATIONS {
-            self.before.as_mut().copy_from_slice(x.as_ref());
-            mechanism.close_positions(t, x);
-            self.refuse_jump(mechanism, t, (x, worst.owner))?;
-            normalise_orientations(mechanism.joint_layout(), x.as_mut());
-            check_finite(t, x.as_ref())?;
+            self.close_once(mechanism, t, (x, worst.owner))?;
             worst = self.worst(mechanism, t, x);
             if worst.value <= tolerance || worst.value <= tolerance * self.magnitude(mechanism, t, x) {
                 return Ok(());
@@ -93,6 +90,41 @@ impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
         }
         let owner = worst.owner.unwrap_or(Owner::Body(0));
         Err(Error::NoConvergence { t: t.to_f64(), violation: worst.value.to_f64(), owner })
+    }
+
+    /// One iteration, towards rows of which the worst has this owner.
+    fn close_once(
+        &mut self,
+        mechanism: &M,
+        t: M::Scalar,
+        (x, owner): (&mut M::Joints, Option<Owner>),
+    ) -> Result<(), Error> {
+        self.before.as_mut().copy_from_slice(x.as_ref());
+        mechanism.close_positions(t, x);
+        self.refuse_jump(mechanism, t, (x, owner))?;
+        normalise_orientations(mechanism.joint_layout(), x.as_mut());
+        check_finite(t, x.as_ref())
+    }
+
+    /// One Newton step of the positions, unless rows depend on each other or the change is a jump.
+    pub(crate) fn newton_step(
+        &mut self,
+        mechanism: &M,
+        t: M::Scalar,
+        x: &mut M::Joints,
+    ) -> Result<(), Error> {
+        normalise_orientations(mechanism.joint_layout(), x.as_mut());
+        if mechanism.joint_layout().closure_rows.is_empty() {
+            return Ok(());
+        }
+        check_finite(t, x.as_ref())?;
+        if let Some(Clearance { pivot, owner }) = self.clearance(mechanism, t, x)
+            && !is_resolvable(pivot)
+        {
+            return Err(Error::Singular { t: t.to_f64(), pivot: pivot.to_f64(), owner });
+        }
+        let owner = self.worst(mechanism, t, x).owner;
+        self.close_once(mechanism, t, (x, owner))
     }
 
     fn worst(&mut self, mechanism: &M, t: M::Scalar, x: &M::Joints) -> Violation<M::Scalar> {

@@ -1,6 +1,6 @@
 //! The coordinate partition of any mechanism, closed loops included, by full pivoting of its constraint Jacobian.
 //!
-//! Where charts do not reach, the whole of Φ_q (joint rows and normalisations, `NC` × `NQ`) is factorised at run time
+//! Where neither charts nor [joint coordinates](crate::joint_partition) reach, the whole of Φ_q (joint rows and normalisations, `NC` × `NQ`) is factorised at run time
 //! in arrays of fixed size: its pivots' columns are the *dependent* coordinates, the others the independent ones. A
 //! generated mechanism calls these functions from its [`Partition`](crate::Partition), one line each.
 //!
@@ -18,24 +18,6 @@
 //! Where a linkage can be put together in two ways and both ways meet (a parallelogram with all bars in line), the last
 //! pivot vanishes. Newton's iteration is safe only while its change is small beside that pivot; a larger one may lead
 //! to the other way and is refused: see [`newton_step`].
-//!
-//! # Example
-//! A planar four-bar linkage has one degree of freedom, so that one of its 21 coordinates is independent:
-//! ```
-//! # fn main() -> Result<(), gyro_sim::Error> {
-//! use gyro_mechanisms::four_bar::FourBar;
-//! use gyro_sim::{Mechanism, Partitioned};
-//!
-//! let linkage = FourBar::<f64>::default();
-//! let mut state = linkage.start();
-//! let mut solver = Partitioned::new(&linkage, &state);
-//! for interval in 0..100 {
-//!     solver.advance(&linkage, f64::from(interval) * 5e-3, 1e-3, 5, &mut state)?;
-//! }
-//! assert_eq!(solver.independent().independent().len(), 1);
-//! # Ok(())
-//! # }
-//! ```
 //!
 //! # Cost
 //! One elimination, about `NC² NQ / 2` multiplications less what zeros save, for each Newton step, each solution for
@@ -307,7 +289,8 @@ struct Pivot<T> {
     row: usize,
 }
 
-fn is_resolvable<T: Real>(pivot: T) -> bool {
+/// Whether a pivot is more than rounding.
+pub(crate) fn is_resolvable<T: Real>(pivot: T) -> bool {
     pivot > T::EPSILON * T::constant(SINGULAR_EPSILONS)
 }
 

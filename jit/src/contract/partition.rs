@@ -4,7 +4,7 @@ use crate::engine::Engine;
 use crate::mechanism::InProcess;
 use gyro_codegen::Kernel;
 use gyro_sim::pivoting::{self, Choice, Extent};
-use gyro_sim::{Clearance, Error, Lanes, Partition, Real};
+use gyro_sim::{Clearance, Error, Lanes, Partition, Real, joint_partition};
 
 /// Numbers of constraints and coordinates that are known at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +51,8 @@ impl Extent for OnHeap {
 pub enum Independent {
     /// The special Euler parameter of each joint.
     Charts(Vec<u8>),
+    /// Coordinates and rates of a tree of joints.
+    Joints,
     /// What pivoting finds.
     Pivots(Choice<OnHeap>),
 }
@@ -79,15 +81,18 @@ impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
     type Independent = Independent;
 
     fn independent(&self, t: T, y: &Vec<T>) -> Independent {
-        let Some(n_charts) = self.scheduled().n_charts else {
-            return Independent::Pivots(pivoting::independent(self, t, y));
-        };
+        let scheduled = self.scheduled();
         let best = |vectors: &[[T; 4]]| vectors.iter().map(T::best_chart).collect();
-        Independent::Charts(self.with_charts(n_charts, y, best))
+        match (scheduled.n_charts, &scheduled.joint) {
+            (Some(n_charts), _) => Independent::Charts(self.with_charts(n_charts, y, best)),
+            (None, Some(_)) => Independent::Joints,
+            (None, None) => Independent::Pivots(pivoting::independent(self, t, y)),
+        }
     }
 
     fn follow(&self, t: T, y: &Vec<T>, choice: &mut Independent) -> u32 {
         match choice {
+            Independent::Joints => 0,
             Independent::Pivots(choice) => pivoting::follow(self, t, y, choice),
             Independent::Charts(charts) => self.with_charts(charts.len(), y, |vectors| {
                 vectors.iter().zip(charts).map(|(vector, chart)| T::follow_chart(vector, chart)).sum()
@@ -97,6 +102,7 @@ impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
 
     fn newton_step(&self, t: T, choice: &Independent, y: &mut Vec<T>) -> Result<(), Error> {
         match choice {
+            Independent::Joints => joint_partition::newton_step(self, t, y),
             Independent::Pivots(choice) => pivoting::newton_step(self, t, choice, y),
             Independent::Charts(charts) => {
                 self.solve(Kernel::NewtonStep, t, charts, y);
@@ -111,6 +117,10 @@ impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
 
     fn solve_velocities(&self, t: T, choice: &Independent, y: &mut Vec<T>) -> Result<(), Error> {
         match choice {
+            Independent::Joints => {
+                joint_partition::solve_velocities(self, t, y);
+                Ok(())
+            }
             Independent::Pivots(choice) => pivoting::solve_velocities(self, t, choice, y),
             Independent::Charts(charts) => {
                 self.solve(Kernel::SolveVelocities, t, charts, y);
@@ -121,9 +131,12 @@ impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
 
     fn clearance(&self, t: T, y: &Vec<T>) -> Option<Clearance<T>> {
         let scheduled = self.scheduled();
-        // Trees have no singular poses.
-        let is_tree = scheduled.joint.as_ref().is_some_and(|joint| joint.closure_rows.is_empty());
-        let has_poses = scheduled.n_charts.is_none() && !is_tree;
-        has_poses.then(|| pivoting::clearance_in::<Self, OnHeap>(self, t, y))
+        match (scheduled.n_charts, &scheduled.joint) {
+            (Some(_), _) => None,
+            // Trees have no singular poses.
+            (None, Some(joint)) if joint.closure_rows.is_empty() => None,
+            (None, Some(_)) => joint_partition::clearance(self, t, y),
+            (None, None) => Some(pivoting::clearance_in::<Self, OnHeap>(self, t, y)),
+        }
     }
 }

@@ -5,4 +5,5 @@ mod compiled;
 mod contacts;
 mod kernels;
 mod pair;
+mod partition;
 mod proof;

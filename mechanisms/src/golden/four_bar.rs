@@ -8,7 +8,7 @@
 //! * unknowns of eq. (17): 35
 //! * non-zeros: Φ_q 114 of 420, (Φ_r, Φ_π') 66 of 306
 //! * left out: coordinates of `ground` (fixed: folded into constants)
-//! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
+//! * left out: charts (for trees of revolute, spherical and fixed joints: the partition goes through joint coordinates)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the model file asks for none)
@@ -60,7 +60,7 @@
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
 //! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
+//! Not proved: the size of rounding errors.
 
 /// The mechanism `four_bar`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -765,12 +765,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for FourBar<T> {
-    type Independent = gyro_sim::pivoting::Pivots<20, 21>;
-    fn independent(&self, t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::pivoting::independent(self, t, y)
-    }
-    fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::pivoting::follow(self, t, y, choice)
+    type Independent = ();
+    fn independent(&self, _t: T, _y: &Self::State) -> Self::Independent {}
+    fn follow(&self, _t: T, _y: &Self::State, _choice: &mut Self::Independent) -> u32 {
+        0
     }
     fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
         gyro_sim::pivoting::is_met(self, t, y, phi)
@@ -778,27 +776,26 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for FourBar<T> {
     fn newton_step(
         &self,
         t: T,
-        choice: &Self::Independent,
+        _choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        gyro_sim::pivoting::newton_step(self, t, choice, y)
+        gyro_sim::joint_partition::newton_step(self, t, y)
     }
     fn solve_velocities(
         &self,
         t: T,
-        choice: &Self::Independent,
+        _choice: &Self::Independent,
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
-        gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+        gyro_sim::joint_partition::solve_velocities(self, t, y);
+        Ok(())
     }
     fn clearance(
         &self,
         t: T,
         y: &Self::State,
     ) -> ::core::option::Option<gyro_sim::Clearance<T>> {
-        ::core::option::Option::Some(
-            gyro_sim::pivoting::clearance::<_, 20, 21>(self, t, y),
-        )
+        gyro_sim::joint_partition::clearance(self, t, y)
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Kinematics for FourBar<T> {

@@ -73,7 +73,13 @@ impl Has {
         };
         Self {
             traits: TRAITS.into_iter().filter(is_there).collect(),
-            choice: if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting },
+            choice: if text.contains("gyro_sim::charts") {
+                Choice::Charts
+            } else if text.contains("gyro_sim::joint_partition") {
+                Choice::Joints
+            } else {
+                Choice::Pivoting
+            },
             corrected: Corrected {
                 has_derivative: !text.contains("gyro_sim::Dynamics::derivative(self"),
                 is_cut: text.contains("out.copy_from_slice("),

@@ -14,9 +14,10 @@ impl ModuleWriter<'_> {
     /// Nothing unless it is asked for.
     pub fn partition(&self) -> Option<TokenStream> {
         let is_asked_for = self.equations.functions.has(Group::Partition);
-        is_asked_for.then(|| match self.equations.charts {
-            Some(_) => self.by_charts(),
-            None => self.by_pivoting(),
+        is_asked_for.then(|| match (&self.equations.charts, &self.equations.joint_space) {
+            (Some(_), _) => self.by_charts(),
+            (None, Some(joint_space)) => self.by_joints(!joint_space.closure_rows.is_empty()),
+            (None, None) => self.by_pivoting(),
         })
     }
 
@@ -25,17 +26,6 @@ impl ModuleWriter<'_> {
         let name = ident(self.type_name);
         let [n_constraints, n_positions] =
             [self.equations.phi.len(), 7 * self.equations.n_moving_bodies()].map(index);
-        // Trees have no singular poses.
-        let is_tree = self.equations.joint_space.as_ref().is_some_and(|space| space.closure_rows.is_empty());
-        let clearance = (!is_tree).then(|| {
-            quote! {
-                fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
-                    ::core::option::Option::Some(
-                        gyro_sim::pivoting::clearance::<_, #n_constraints, #n_positions>(self, t, y)
-                    )
-                }
-            }
-        });
         quote! {
             impl<T: gyro_sim::Real> gyro_sim::Partition for #name<T> {
                 type Independent = gyro_sim::pivoting::Pivots<#n_constraints, #n_positions>;
@@ -58,6 +48,47 @@ impl ModuleWriter<'_> {
                     &self, t: T, choice: &Self::Independent, y: &mut Self::State,
                 ) -> ::core::result::Result<(), gyro_sim::Error> {
                     gyro_sim::pivoting::solve_velocities(self, t, choice, y)
+                }
+                fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+                    ::core::option::Option::Some(
+                        gyro_sim::pivoting::clearance::<_, #n_constraints, #n_positions>(self, t, y)
+                    )
+                }
+            }
+        }
+    }
+
+    /// Through the coordinates of a tree of joints. Trees have no singular poses.
+    fn by_joints(&self, closes_loops: bool) -> TokenStream {
+        let name = ident(self.type_name);
+        let clearance = closes_loops.then(|| {
+            quote! {
+                fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+                    gyro_sim::joint_partition::clearance(self, t, y)
+                }
+            }
+        });
+        quote! {
+            impl<T: gyro_sim::Real> gyro_sim::Partition for #name<T> {
+                type Independent = ();
+
+                fn independent(&self, _t: T, _y: &Self::State) -> Self::Independent {}
+                fn follow(&self, _t: T, _y: &Self::State, _choice: &mut Self::Independent) -> u32 {
+                    0
+                }
+                fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
+                    gyro_sim::pivoting::is_met(self, t, y, phi)
+                }
+                fn newton_step(
+                    &self, t: T, _choice: &Self::Independent, y: &mut Self::State,
+                ) -> ::core::result::Result<(), gyro_sim::Error> {
+                    gyro_sim::joint_partition::newton_step(self, t, y)
+                }
+                fn solve_velocities(
+                    &self, t: T, _choice: &Self::Independent, y: &mut Self::State,
+                ) -> ::core::result::Result<(), gyro_sim::Error> {
+                    gyro_sim::joint_partition::solve_velocities(self, t, y);
+                    Ok(())
                 }
                 #clearance
             }

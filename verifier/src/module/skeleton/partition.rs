@@ -1,4 +1,4 @@
-//! The coordinate partition, in either of two ways.
+//! The coordinate partition, in one of three ways.
 
 use super::mechanism::n_state;
 use super::pieces::lines;
@@ -10,6 +10,8 @@ use gyro_model::Model;
 pub enum Choice {
     /// One special Euler parameter for each joint.
     Charts,
+    /// Through the coordinates of a tree of joints.
+    Joints,
     /// Full pivoting at run time.
     Pivoting,
 }
@@ -17,7 +19,8 @@ pub enum Choice {
 pub(super) fn partition(model: &Model, name: &str, choice: Choice, joints: Option<&JointLayout>) -> String {
     match choice {
         Choice::Charts => by_charts(model, name),
-        Choice::Pivoting => by_pivoting(model, name, joints),
+        Choice::Joints => by_joints(name, joints),
+        Choice::Pivoting => by_pivoting(model, name),
     }
 }
 
@@ -59,7 +62,38 @@ fn by_charts(model: &Model, name: &str) -> String {
     )
 }
 
-fn by_pivoting(model: &Model, name: &str, joints: Option<&JointLayout>) -> String {
+fn by_joints(name: &str, joints: Option<&JointLayout>) -> String {
+    // Where no loop is closed there are no singular poses.
+    let clearance = if joints.is_some_and(|joints| joints.closure_rows.is_empty()) {
+        ""
+    } else {
+        "fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+            gyro_sim::joint_partition::clearance(self, t, y)
+        }"
+    };
+    format!(
+        "impl<T: gyro_sim::Real> gyro_sim::Partition for {name}<T> {{
+            type Independent = ();
+            fn independent(&self, _t: T, _y: &Self::State) -> Self::Independent {{}}
+            fn follow(&self, _t: T, _y: &Self::State, _choice: &mut Self::Independent) -> u32 {{
+                0
+            }}
+            fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {{
+                gyro_sim::pivoting::is_met(self, t, y, phi)
+            }}
+            fn newton_step(&self, t: T, _choice: &Self::Independent, y: &mut Self::State) -> {SOLVED} {{
+                gyro_sim::joint_partition::newton_step(self, t, y)
+            }}
+            fn solve_velocities(&self, t: T, _choice: &Self::Independent, y: &mut Self::State) -> {SOLVED} {{
+                gyro_sim::joint_partition::solve_velocities(self, t, y);
+                Ok(())
+            }}
+            {clearance}
+        }}"
+    )
+}
+
+fn by_pivoting(model: &Model, name: &str) -> String {
     let n = model.coordinate_bodies().len();
     let (n_constraints, n_positions) = (model.rows().len() + n, 7 * n);
     let solves = lines(["newton_step", "solve_velocities"].map(|solve| {
@@ -69,18 +103,6 @@ fn by_pivoting(model: &Model, name: &str, joints: Option<&JointLayout>) -> Strin
             }}"
         )
     }));
-    // Where no loop is closed there are no singular poses.
-    let clearance = if joints.is_some_and(|joints| joints.closure_rows.is_empty()) {
-        String::new()
-    } else {
-        format!(
-            "fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {{
-                ::core::option::Option::Some(
-                    gyro_sim::pivoting::clearance::<_, {n_constraints}, {n_positions}>(self, t, y)
-                )
-            }}"
-        )
-    };
     format!(
         "impl<T: gyro_sim::Real> gyro_sim::Partition for {name}<T> {{
             type Independent = gyro_sim::pivoting::Pivots<{n_constraints}, {n_positions}>;
@@ -94,7 +116,11 @@ fn by_pivoting(model: &Model, name: &str, joints: Option<&JointLayout>) -> Strin
                 gyro_sim::pivoting::is_met(self, t, y, phi)
             }}
             {solves}
-            {clearance}
+            fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {{
+                ::core::option::Option::Some(
+                    gyro_sim::pivoting::clearance::<_, {n_constraints}, {n_positions}>(self, t, y)
+                )
+            }}
         }}"
     )
 }

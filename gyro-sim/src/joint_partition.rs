@@ -1,0 +1,119 @@
+//! The coordinate partition through joint coordinates: what is independent are the coordinates and rates of a tree of
+//! joints.
+//!
+//! Where charts do not reach, a mechanism that has joint coordinates is partitioned in them, by the functions of its
+//! [`JointSpace`]: unrolled, and of the size of what closes its loops rather than of Φ_q. A step reads the coordinates
+//! of the tree off the maximal state, closes loops by the smallest change of these, and places the bodies anew. Nothing
+//! else of the tree's coordinates changes; couplers and drivers are satisfied by construction, and so are the rows of
+//! all joints of the tree. As none of a loop's coordinates is preferred, there is no choice that could become a poor
+//! one. A generated mechanism calls these functions from its [`Partition`](crate::Partition), one line each.
+//!
+//! # Example
+//! ```
+//! # fn main() -> Result<(), gyro_sim::Error> {
+//! use gyro_mechanisms::four_bar::FourBar;
+//! use gyro_sim::{Mechanism, Partitioned, violation};
+//!
+//! let linkage = FourBar::<f64>::default();
+//! let mut state = linkage.start();
+//! let mut solver = Partitioned::new(&linkage, &state);
+//! for interval in 0..100 {
+//!     solver.advance(&linkage, f64::from(interval) * 5e-3, 1e-3, 5, &mut state)?;
+//! }
+//! let mut phi = linkage.buffers().constraints;
+//! linkage.phi(0.5, &state, &mut phi);
+//! assert!(violation(&linkage, &phi).value < 1e-14);
+//! # Ok(())
+//! # }
+//! ```
+
+use crate::{Clearance, CloseLoops, Description, Error, JointPlace, JointSpace, Real, Scalar};
+
+/// One Newton step of the positions: closed loops and bodies that their joints hold.
+///
+/// # Errors
+/// [`Error::Singular`] where rows that close loops depend on each other, and [`Error::Jump`] if the change is so large
+/// that the solution may not be the one nearby: the state is then as it was.
+pub fn newton_step<M: JointSpace<Scalar: Real>>(
+    mechanism: &M,
+    t: M::Scalar,
+    y: &mut M::State,
+) -> Result<(), Error> {
+    let mut x = joints(mechanism, t, y);
+    CloseLoops::new(mechanism).newton_step(mechanism, t, &mut x)?;
+    let placed = placed(mechanism, t, &x);
+    let (n_positions, placed) = (7 * mechanism.description().bodies.len(), placed.as_ref());
+    let (old, new) = (y.as_mut().as_chunks_mut::<7>().0, placed.as_chunks::<7>().0);
+    for (old, new) in old.iter_mut().zip(new).take(n_positions / 7) {
+        *old = nearer_sign(old, *new);
+    }
+    Ok(())
+}
+
+/// The velocities that satisfy eq. (19) at these positions: rates of the tree, changed by the smallest change that
+/// closes loops.
+pub fn solve_velocities<M: JointSpace<Scalar: Real>>(mechanism: &M, t: M::Scalar, y: &mut M::State) {
+    let mut x = joints(mechanism, t, y);
+    mechanism.close_velocities(t, &mut x);
+    let placed = placed(mechanism, t, &x);
+    let n_bodies = mechanism.description().bodies.len();
+    let velocities = y.as_mut().iter_mut().zip(placed.as_ref()).skip(7 * n_bodies).take(6 * n_bodies);
+    velocities.for_each(|(old, new)| *old = *new);
+}
+
+/// How clear a state is of singular poses: see [`CloseLoops::clearance`].
+pub fn clearance<M: JointSpace<Scalar: Real>>(
+    mechanism: &M,
+    t: M::Scalar,
+    y: &M::State,
+) -> Option<Clearance<M::Scalar>> {
+    CloseLoops::new(mechanism).clearance(mechanism, t, &joints(mechanism, t, y))
+}
+
+/// The joint state of a maximal state.
+///
+/// Angles are those of one turn, which have the most digits, unless couplers are there, to which whole turns matter:
+/// then they continue from the state's turn references.
+fn joints<M: JointSpace>(mechanism: &M, t: M::Scalar, y: &M::State) -> M::Joints {
+    let mut x = mechanism.joint_start();
+    let (description, layout) = (mechanism.description(), mechanism.joint_layout());
+    let mut rest = x.as_mut();
+    for place in layout.places {
+        let Some((own, others)) = rest.split_at_mut_checked(place.n_coordinates()) else { break };
+        if let JointPlace::Scalar { joint, coordinate } | JointPlace::Turn { joint, coordinate } = *place {
+            let turn = turn_of(description, joint, coordinate).and_then(|turn| y.as_ref().get(turn));
+            let turn = turn.filter(|_| !description.couplers.is_empty());
+            own.fill(turn.copied().unwrap_or(M::Scalar::constant(0.0)));
+        }
+        rest = others;
+    }
+    mechanism.to_joints(t, y, &mut x);
+    x
+}
+
+/// Where the turn reference of a joint's coordinate stands in the state, if there is one.
+fn turn_of(description: &Description<'_>, joint: u16, coordinate: u16) -> Option<usize> {
+    let (joint, coordinate) = (usize::from(joint), usize::from(coordinate));
+    let before = description.joints.iter().take(joint).map(|joint| joint.n_readings());
+    let own = description.joints.get(joint)?.coordinates.iter().take(coordinate).map(|kind| kind.n_readings());
+    let reading = before.chain(own).sum();
+    let turn = description.turn_references.iter().position(|&at| usize::from(at) == reading)?;
+    Some(13 * description.bodies.len() + usize::from(description.has_work) + turn)
+}
+
+fn placed<M: JointSpace>(mechanism: &M, t: M::Scalar, x: &M::Joints) -> M::State {
+    let mut y = mechanism.start();
+    mechanism.to_maximal(t, x, &mut y);
+    y
+}
+
+/// A body's (r, p) with p of unit length and, of the two that stand for the same orientation, the one nearer to the
+/// old.
+fn nearer_sign<T: Real>(old: &[T; 7], new: [T; 7]) -> [T; 7] {
+    let [_, _, _, a0, a1, a2, a3] = *old;
+    let [x, y, z, b0, b1, b2, b3] = new;
+    let along = a0 * b0 + a1 * b1 + a2 * b2 + a3 * b3;
+    let scale = (b0 * b0 + b1 * b1 + b2 * b2 + b3 * b3).sqrt();
+    let scale = if along < T::constant(0.0) { -scale } else { scale };
+    [x, y, z, b0 / scale, b1 / scale, b2 / scale, b3 / scale]
+}
