@@ -113,8 +113,8 @@ impl Group {
 pub struct Facts {
     /// Whether joint coordinates describe it.
     pub joint_coordinates: bool,
-    /// Whether charts cover it.
-    pub charts: bool,
+    /// Whether its partition goes through joint coordinates.
+    pub joint_partition: bool,
     /// Whether an output tells accelerations or multipliers.
     pub outputs_of_motion: bool,
     /// Whether an output tells multipliers.
@@ -163,7 +163,7 @@ impl Functions {
     }
 
     /// What is written of these for a mechanism: without joint coordinates accelerations at corrected states are those
-    /// at any state, which outputs may need too; and what charts do not cover is partitioned in joint coordinates.
+    /// at any state, which outputs may need too; and a partition that goes through joint coordinates needs them.
     pub(crate) fn of_mechanism(mut self, facts: Facts) -> Self {
         let has_own = facts.joint_coordinates && !facts.work_of_loops;
         if facts.outputs_of_motion || self.has(Group::Corrected) && !has_own {
@@ -173,8 +173,7 @@ impl Functions {
             // They are proved for these multipliers.
             self.0.extend(Group::Reactions.with_needs());
         }
-        if self.has(Group::Partition) && !facts.charts {
-            // The partition goes through joint coordinates.
+        if self.has(Group::Partition) && facts.joint_partition {
             self.0.insert(Group::Joint);
         }
         if !facts.joint_coordinates {

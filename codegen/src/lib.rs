@@ -56,6 +56,7 @@ pub mod tape;
 pub use effort::Effort;
 pub use emit::data_sheet::{DataSheet, Function, large};
 pub use equations::Argument;
+pub use equations::PartitionForm;
 pub use expr::schedule::{Operations, Passes};
 pub use groups::{Functions, Group};
 pub use kernels::Kernel;
@@ -68,7 +69,7 @@ pub use simplify::normal_form::Reduction;
 use derive::system::System;
 use derive::{Observed, Textbook};
 use emit::module;
-use equations::{Equations, Parts, Rotations};
+use equations::{Equations, Parts, Rotations, turns_screws};
 use groups::Facts;
 use joint_space::{Candidates, Coordinates, JointSpace, obstacle};
 use kernels::Kernels;
@@ -299,7 +300,7 @@ fn facts(system: &System) -> Facts {
     };
     Facts {
         joint_coordinates: obstacle(model).is_none(),
-        charts: Partition::covers(system),
+        joint_partition: !Partition::covers(system) && !turns_screws(model),
         outputs_of_motion: model.outputs.iter().any(tells_motion),
         outputs_of_multipliers: model.outputs.iter().any(tells_multipliers),
         work_of_loops: is_driven && model.has_work() && !system.loop_closure_rows().is_empty(),

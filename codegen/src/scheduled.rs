@@ -1,11 +1,11 @@
 //! A mechanism as data: its kernels as tapes, and what solvers have to know of them. The text of a module is written
 //! from this, and whoever compiles or interprets kernels by other means works from the same operations.
 
-use crate::equations::{Argument, Equations};
+use crate::equations::{Argument, Equations, PartitionForm};
 use crate::expr::constant::Constant;
 use crate::expr::graph::{ExprId, Node};
 use crate::expr::symbol::Symbol;
-use crate::groups::{Functions, Group};
+use crate::groups::Functions;
 use crate::joint_space::JointSpace;
 use crate::kernels::{Kernel, Kernels};
 use crate::repeat::{self, Local, Repetition};
@@ -124,8 +124,8 @@ pub struct Scheduled {
     pub n_outputs: usize,
     /// Length of what [`Kernel::Accelerations`] gives.
     pub n_accelerations: usize,
-    /// The number of charts, where they cover the mechanism.
-    pub n_charts: Option<usize>,
+    /// How the partition goes, where it is asked for.
+    pub partition: PartitionForm,
     /// Row and column of each number of Φ_q.
     pub phi_q_pattern: Vec<(usize, usize)>,
     /// Row and column of each number of (Φ_r, Φ_π').
@@ -143,7 +143,6 @@ pub struct Scheduled {
 impl Scheduled {
     pub(crate) fn of(equations: &Equations, kernels: &Kernels, start: &Start) -> Self {
         let e = equations;
-        let has_charts = e.functions.has(Group::Partition) && e.charts.is_some();
         let pattern = |sparse: &crate::equations::Sparse| {
             sparse.0.iter().map(|&(row, column, _)| (row, column)).collect()
         };
@@ -156,7 +155,7 @@ impl Scheduled {
             n_readings: e.readings.len(),
             n_outputs: e.outputs.len(),
             n_accelerations: e.solved.roots.len(),
-            n_charts: has_charts.then(|| kernels.roots(Kernel::ChartVectors).len() / 4),
+            partition: e.partition_form(),
             phi_q_pattern: pattern(&e.phi_q),
             phi_pi_pattern: pattern(&e.phi_pi),
             start: self::start(e.model, start),

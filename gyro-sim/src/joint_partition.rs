@@ -70,10 +70,8 @@ pub fn clearance<M: JointSpace<Scalar: Real>>(
     CloseLoops::new(mechanism).clearance(mechanism, t, &joints(mechanism, t, y))
 }
 
-/// The joint state of a maximal state.
-///
-/// Angles are those of one turn, which have the most digits, unless couplers are there, to which whole turns matter:
-/// then they continue from the state's turn references.
+/// The joint state of a maximal state: angles on whose whole turns something depends, such as gears and screws,
+/// continue from the state's turn references, others are of one turn, where they have the most digits.
 fn joints<M: JointSpace>(mechanism: &M, t: M::Scalar, y: &M::State) -> M::Joints {
     let mut x = mechanism.joint_start();
     let (description, layout) = (mechanism.description(), mechanism.joint_layout());
@@ -82,7 +80,6 @@ fn joints<M: JointSpace>(mechanism: &M, t: M::Scalar, y: &M::State) -> M::Joints
         let Some((own, others)) = rest.split_at_mut_checked(place.n_coordinates()) else { break };
         if let JointPlace::Scalar { joint, coordinate } | JointPlace::Turn { joint, coordinate } = *place {
             let turn = turn_of(description, joint, coordinate).and_then(|turn| y.as_ref().get(turn));
-            let turn = turn.filter(|_| !description.couplers.is_empty());
             own.fill(turn.copied().unwrap_or(M::Scalar::constant(0.0)));
         }
         rest = others;
@@ -95,7 +92,8 @@ fn joints<M: JointSpace>(mechanism: &M, t: M::Scalar, y: &M::State) -> M::Joints
 fn turn_of(description: &Description<'_>, joint: u16, coordinate: u16) -> Option<usize> {
     let (joint, coordinate) = (usize::from(joint), usize::from(coordinate));
     let before = description.joints.iter().take(joint).map(|joint| joint.n_readings());
-    let own = description.joints.get(joint)?.coordinates.iter().take(coordinate).map(|kind| kind.n_readings());
+    let own =
+        description.joints.get(joint)?.coordinates.iter().take(coordinate).map(|kind| kind.n_readings());
     let reading = before.chain(own).sum();
     let turn = description.turn_references.iter().position(|&at| usize::from(at) == reading)?;
     Some(13 * description.bodies.len() + usize::from(description.has_work) + turn)

@@ -17,7 +17,7 @@ use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::normal_form::vanishes;
 use crate::solve::Solution;
 use crate::solve::partition::Partition;
-use gyro_model::{Model, Spline};
+use gyro_model::{JointKind, Model, Spline};
 
 /// Non-zeros with their places.
 #[derive(Debug)]
@@ -93,6 +93,23 @@ pub enum Argument {
     Rows,
 }
 
+/// How positions and velocities are split into independent and dependent ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PartitionForm {
+    /// By charts, which cover the mechanism.
+    Charts,
+    /// Through joint coordinates.
+    Joints,
+    /// By pivoting at run time.
+    Pivoting,
+}
+
+/// Whether it has screws. How far one has turned is known best from its displacement, which a method integrates with no
+/// error of phase, and only pivoting keeps that.
+pub fn turns_screws(model: &Model) -> bool {
+    model.joints.iter().any(|joint| joint.kind == JointKind::Screw)
+}
+
 /// The partition by charts.
 #[derive(Debug)]
 pub struct Charts {
@@ -114,6 +131,17 @@ pub struct Parts {
 }
 
 impl<'m> Equations<'m> {
+    /// How the partition goes, where it is asked for.
+    pub fn partition_form(&self) -> PartitionForm {
+        if self.charts.is_some() {
+            PartitionForm::Charts
+        } else if self.joint_space.is_some() && !turns_screws(self.model) {
+            PartitionForm::Joints
+        } else {
+            PartitionForm::Pivoting
+        }
+    }
+
     /// Expands what was derived and solved, each function in the cheapest way. `solved` are the accelerations as they
     /// were chosen before: the forms of joint coordinates are compared with them.
     pub fn choose(

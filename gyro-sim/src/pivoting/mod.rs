@@ -1,8 +1,9 @@
 //! The coordinate partition of any mechanism, closed loops included, by full pivoting of its constraint Jacobian.
 //!
-//! Where neither charts nor [joint coordinates](crate::joint_partition) reach, the whole of Φ_q (joint rows and normalisations, `NC` × `NQ`) is factorised at run time
-//! in arrays of fixed size: its pivots' columns are the *dependent* coordinates, the others the independent ones. A
-//! generated mechanism calls these functions from its [`Partition`](crate::Partition), one line each.
+//! Where neither charts nor [joint coordinates](crate::joint_partition) serve, the whole of Φ_q (joint rows and
+//! normalisations, `NC` × `NQ`) is factorised at run time in arrays of fixed size: its pivots' columns are the
+//! *dependent* coordinates, the others the independent ones. A generated mechanism calls these functions from its
+//! [`Partition`](crate::Partition), one line each.
 //!
 //! Lengths are measured in units of the mechanism's [`size`](crate::Mechanism::size), in rows and columns alike, so
 //! that pivots are pure numbers and compare.

@@ -2,7 +2,7 @@
 
 use crate::engine::Engine;
 use crate::mechanism::InProcess;
-use gyro_codegen::Kernel;
+use gyro_codegen::{Kernel, PartitionForm};
 use gyro_sim::pivoting::{self, Choice, Extent};
 use gyro_sim::{Clearance, Error, Lanes, Partition, Real, joint_partition};
 
@@ -59,8 +59,8 @@ pub enum Independent {
 
 impl<T: Real, E: Engine<T>> InProcess<T, E> {
     /// Hands the four-vectors of the charts to `f`.
-    fn with_charts<R>(&self, n_charts: usize, y: &[T], f: impl FnOnce(&[[T; 4]]) -> R) -> R {
-        self.with_given(4 * n_charts, |vectors| {
+    fn with_charts<R>(&self, y: &[T], f: impl FnOnce(&[[T; 4]]) -> R) -> R {
+        self.with_given(self.n_results(Kernel::ChartVectors), |vectors| {
             self.fill(Kernel::ChartVectors, T::constant(0.0), y, vectors);
             f(vectors.as_chunks::<4>().0)
         })
@@ -81,12 +81,11 @@ impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
     type Independent = Independent;
 
     fn independent(&self, t: T, y: &Vec<T>) -> Independent {
-        let scheduled = self.scheduled();
         let best = |vectors: &[[T; 4]]| vectors.iter().map(T::best_chart).collect();
-        match (scheduled.n_charts, &scheduled.joint) {
-            (Some(n_charts), _) => Independent::Charts(self.with_charts(n_charts, y, best)),
-            (None, Some(_)) => Independent::Joints,
-            (None, None) => Independent::Pivots(pivoting::independent(self, t, y)),
+        match self.scheduled().partition {
+            PartitionForm::Charts => Independent::Charts(self.with_charts(y, best)),
+            PartitionForm::Joints => Independent::Joints,
+            PartitionForm::Pivoting => Independent::Pivots(pivoting::independent(self, t, y)),
         }
     }
 
@@ -94,7 +93,7 @@ impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
         match choice {
             Independent::Joints => 0,
             Independent::Pivots(choice) => pivoting::follow(self, t, y, choice),
-            Independent::Charts(charts) => self.with_charts(charts.len(), y, |vectors| {
+            Independent::Charts(charts) => self.with_charts(y, |vectors| {
                 vectors.iter().zip(charts).map(|(vector, chart)| T::follow_chart(vector, chart)).sum()
             }),
         }
@@ -112,7 +111,7 @@ impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
     }
 
     fn is_met(&self, t: T, y: &Vec<T>, phi: &Vec<T>) -> bool {
-        self.scheduled().n_charts.is_none() && pivoting::is_met(self, t, y, phi)
+        self.scheduled().partition != PartitionForm::Charts && pivoting::is_met(self, t, y, phi)
     }
 
     fn solve_velocities(&self, t: T, choice: &Independent, y: &mut Vec<T>) -> Result<(), Error> {
@@ -130,13 +129,13 @@ impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
     }
 
     fn clearance(&self, t: T, y: &Vec<T>) -> Option<Clearance<T>> {
-        let scheduled = self.scheduled();
-        match (scheduled.n_charts, &scheduled.joint) {
-            (Some(_), _) => None,
-            // Trees have no singular poses.
-            (None, Some(joint)) if joint.closure_rows.is_empty() => None,
-            (None, Some(_)) => joint_partition::clearance(self, t, y),
-            (None, None) => Some(pivoting::clearance_in::<Self, OnHeap>(self, t, y)),
+        // Trees have no singular poses.
+        let joint = self.scheduled().joint.as_ref();
+        let has_poses = joint.is_none_or(|joint| !joint.closure_rows.is_empty());
+        match self.scheduled().partition {
+            PartitionForm::Joints if has_poses => joint_partition::clearance(self, t, y),
+            PartitionForm::Pivoting if has_poses => Some(pivoting::clearance_in::<Self, OnHeap>(self, t, y)),
+            _ => None,
         }
     }
 }

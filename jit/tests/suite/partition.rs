@@ -99,7 +99,8 @@ fn pivoting_finds_nothing_left_on_random_models() {
     let mut n_checked = 0;
     for seed in 7000..7080 {
         let text = gyro_pages::page(seed);
-        let model = gyro_model::read_with("page.toml", &text, &mut gyro_pages::load).expect("a correct model file");
+        let model =
+            gyro_model::read_with("page.toml", &text, &mut gyro_pages::load).expect("a correct model file");
         n_checked += u32::from(check(&format!("model file {seed}"), &model, seed));
     }
     assert!(n_checked > 20, "{n_checked} models have such a partition");

@@ -3,6 +3,7 @@
 use super::writer::ModuleWriter;
 use crate::emit::names::{ident, index};
 use crate::emit::results::stored;
+use crate::equations::PartitionForm;
 use crate::expr::symbol::Symbol;
 use crate::groups::Group;
 use crate::kernels::Kernel;
@@ -14,18 +15,30 @@ impl ModuleWriter<'_> {
     /// Nothing unless it is asked for.
     pub fn partition(&self) -> Option<TokenStream> {
         let is_asked_for = self.equations.functions.has(Group::Partition);
-        is_asked_for.then(|| match (&self.equations.charts, &self.equations.joint_space) {
-            (Some(_), _) => self.by_charts(),
-            (None, Some(joint_space)) => self.by_joints(!joint_space.closure_rows.is_empty()),
-            (None, None) => self.by_pivoting(),
+        // Trees have no singular poses.
+        let joint_space = self.equations.joint_space.as_ref();
+        let has_poses = joint_space.is_none_or(|space| !space.closure_rows.is_empty());
+        is_asked_for.then(|| match self.equations.partition_form() {
+            PartitionForm::Charts => self.by_charts(),
+            PartitionForm::Joints => self.by_joints(has_poses),
+            PartitionForm::Pivoting => self.by_pivoting(has_poses),
         })
     }
 
     /// Full pivoting at run time.
-    fn by_pivoting(&self) -> TokenStream {
+    fn by_pivoting(&self, has_poses: bool) -> TokenStream {
         let name = ident(self.type_name);
         let [n_constraints, n_positions] =
             [self.equations.phi.len(), 7 * self.equations.n_moving_bodies()].map(index);
+        let clearance = has_poses.then(|| {
+            quote! {
+                fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
+                    ::core::option::Option::Some(
+                        gyro_sim::pivoting::clearance::<_, #n_constraints, #n_positions>(self, t, y)
+                    )
+                }
+            }
+        });
         quote! {
             impl<T: gyro_sim::Real> gyro_sim::Partition for #name<T> {
                 type Independent = gyro_sim::pivoting::Pivots<#n_constraints, #n_positions>;
@@ -49,19 +62,15 @@ impl ModuleWriter<'_> {
                 ) -> ::core::result::Result<(), gyro_sim::Error> {
                     gyro_sim::pivoting::solve_velocities(self, t, choice, y)
                 }
-                fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
-                    ::core::option::Option::Some(
-                        gyro_sim::pivoting::clearance::<_, #n_constraints, #n_positions>(self, t, y)
-                    )
-                }
+                #clearance
             }
         }
     }
 
-    /// Through the coordinates of a tree of joints. Trees have no singular poses.
-    fn by_joints(&self, closes_loops: bool) -> TokenStream {
+    /// Through the coordinates of a tree of joints.
+    fn by_joints(&self, has_poses: bool) -> TokenStream {
         let name = ident(self.type_name);
-        let clearance = closes_loops.then(|| {
+        let clearance = has_poses.then(|| {
             quote! {
                 fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
                     gyro_sim::joint_partition::clearance(self, t, y)

@@ -17,10 +17,12 @@ pub enum Choice {
 }
 
 pub(super) fn partition(model: &Model, name: &str, choice: Choice, joints: Option<&JointLayout>) -> String {
+    // Where no loop is closed there are no singular poses.
+    let has_poses = joints.is_none_or(|joints| !joints.closure_rows.is_empty());
     match choice {
         Choice::Charts => by_charts(model, name),
-        Choice::Joints => by_joints(name, joints),
-        Choice::Pivoting => by_pivoting(model, name),
+        Choice::Joints => by_joints(name, has_poses),
+        Choice::Pivoting => by_pivoting(model, name, has_poses),
     }
 }
 
@@ -62,14 +64,13 @@ fn by_charts(model: &Model, name: &str) -> String {
     )
 }
 
-fn by_joints(name: &str, joints: Option<&JointLayout>) -> String {
-    // Where no loop is closed there are no singular poses.
-    let clearance = if joints.is_some_and(|joints| joints.closure_rows.is_empty()) {
-        ""
-    } else {
+fn by_joints(name: &str, has_poses: bool) -> String {
+    let clearance = if has_poses {
         "fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
             gyro_sim::joint_partition::clearance(self, t, y)
         }"
+    } else {
+        ""
     };
     format!(
         "impl<T: gyro_sim::Real> gyro_sim::Partition for {name}<T> {{
@@ -93,7 +94,7 @@ fn by_joints(name: &str, joints: Option<&JointLayout>) -> String {
     )
 }
 
-fn by_pivoting(model: &Model, name: &str) -> String {
+fn by_pivoting(model: &Model, name: &str, has_poses: bool) -> String {
     let n = model.coordinate_bodies().len();
     let (n_constraints, n_positions) = (model.rows().len() + n, 7 * n);
     let solves = lines(["newton_step", "solve_velocities"].map(|solve| {
@@ -103,6 +104,17 @@ fn by_pivoting(model: &Model, name: &str) -> String {
             }}"
         )
     }));
+    let clearance = if has_poses {
+        format!(
+            "fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {{
+                ::core::option::Option::Some(
+                    gyro_sim::pivoting::clearance::<_, {n_constraints}, {n_positions}>(self, t, y)
+                )
+            }}"
+        )
+    } else {
+        String::new()
+    };
     format!(
         "impl<T: gyro_sim::Real> gyro_sim::Partition for {name}<T> {{
             type Independent = gyro_sim::pivoting::Pivots<{n_constraints}, {n_positions}>;
@@ -116,11 +128,7 @@ fn by_pivoting(model: &Model, name: &str) -> String {
                 gyro_sim::pivoting::is_met(self, t, y, phi)
             }}
             {solves}
-            fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {{
-                ::core::option::Option::Some(
-                    gyro_sim::pivoting::clearance::<_, {n_constraints}, {n_positions}>(self, t, y)
-                )
-            }}
+            {clearance}
         }}"
     )
 }
