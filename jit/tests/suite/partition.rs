@@ -5,7 +5,7 @@ use gyro_codegen::{Effort, Functions, Group};
 use gyro_jit::{Independent, OnHeap};
 use gyro_model::Model;
 use gyro_sim::pivoting::{self, Choice};
-use gyro_sim::{JointSpace, Mechanism, Partition, Partitioning, violation};
+use gyro_sim::{CloseLoops, JointSpace, Mechanism, Partition, Partitioning, violation};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -104,4 +104,30 @@ fn pivoting_finds_nothing_left_on_random_models() {
         n_checked += u32::from(check(&format!("model file {seed}"), &model, seed));
     }
     assert!(n_checked > 20, "{n_checked} models have such a partition");
+}
+
+/// Distances of rows in joint coordinates are not those in maximal ones, but go to zero with them.
+#[test]
+fn both_are_clear_of_the_same_poses() {
+    for name in ["four-bar", "four-bar-in-line"] {
+        let text = std::fs::read_to_string(format!("../models/{name}.toml")).expect("a model file");
+        let model = gyro_model::read(name, &text).expect("a good model file");
+        let functions = Functions::of([Group::Kinematics, Group::Partition]);
+        let linkage = gyro_jit::compile::<f64>(&model, &functions, Effort::Quick).expect("a mechanism");
+        let (mut x, mut y) = (linkage.joint_start(), linkage.start());
+        let mut loops = CloseLoops::new(&linkage);
+        let (mut n_compared, mut least) = (0, f64::INFINITY);
+        for _ in 0..60 {
+            x[0] += 0.02;
+            if loops.correct(&linkage, 0.0, &mut x).is_err() {
+                break;
+            }
+            linkage.to_maximal(0.0, &x, &mut y);
+            let one = linkage.clearance(0.0, &y).expect("it has a loop").pivot;
+            let other = pivoting::clearance_in::<_, OnHeap>(&linkage, 0.0, &y).pivot;
+            assert!(one > 0.1 * other && one < 10.0 * other, "{name}: {one:e} {other:e}");
+            (n_compared, least) = (n_compared + 1, other.min(least));
+        }
+        assert!(n_compared > 10, "{name}: {n_compared} poses, as near as {least:e}");
+    }
 }
