@@ -274,8 +274,8 @@ fn unavailable(model: &Model, module: &Module) -> Vec<String> {
     lines
 }
 
-/// `| phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 |`, with the loops in which it is computed if there
-/// are some; what gives no numbers has no row.
+/// `| phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 |`, with the loops in which it is computed if
+/// there are some; what gives no numbers has no row.
 fn row(model: &Model, module: &Module, name: &str, program: &Program) -> Option<String> {
     let computes = words(name)?.computes;
     let operations = Operations::of(program);
