@@ -80,7 +80,7 @@ fn changed(full: &Module, module: &Module, not_asked: &[Group], names: &[String]
     let is_kept = |member: &&str| {
         let is_of_function = names.iter().any(|name| member.starts_with(&format!("fn {name}")));
         let is_of_joints = ["pub mod joint", "pub mod body"].iter().any(|word| member.starts_with(word));
-        !is_of_function && !(without_joints && is_of_joints)
+        !(is_of_function || without_joints && is_of_joints)
     };
     // Without joint coordinates nothing tells the partition how far from a singular pose it is, so it sees for itself.
     let is_other = |item: &str| is_out(item) || without_joints && item.contains("::Partition for");
