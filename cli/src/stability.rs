@@ -37,9 +37,10 @@ the [runtime-assembled model](glossary.md#runtime-assembled-model), eq. (17) by 
 has no u̇, so beside functions that give u̇, whose errors are in terms of the largest of u̇ and v̇, the table shows its
 error in v̇.
 
-Parameters may take any value, so of small trees only the form that cancels nothing is accurate enough to be taken. Where
-the numbers are folded into a module, the shortest form that is as accurate for these numbers is: in the last table of
-each mechanism a module is generated for each configuration, for every fortieth of them.
+Parameters may take any value, so of small trees only the form that cancels nothing is accurate enough to be taken.
+Where the numbers are folded into a module, the shortest form that is as accurate for these numbers is: in the last
+table of each mechanism a module is generated for each configuration, for every fortieth of them. *In joint frames*: the
+modules that go from base inertial parameters, in frames that suit the joints.
 
 ";
 
