@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::progress::Spinner;
 use crate::{chain, files, places, scene};
 use gyro_assembled::Dense;
-use gyro_codegen::Functions;
+use gyro_codegen::{Functions, Kernel};
 use gyro_model::{Model, Number, Parameter, Rational};
 use gyro_sim::{Dynamics, Mechanism};
 use gyro_verifier::field::Precision;
@@ -21,6 +21,9 @@ use std::path::PathBuf;
 /// A relative error beyond which a solve has failed.
 const FAILURE: f64 = 1e-3;
 
+/// Configurations for each of which a module of its own is generated, in terms of all.
+const FOLDED_ONE_IN: usize = 40;
+
 const SEED: u64 = 20_261_121;
 
 const HEAD: &str = "# Stability: what the solves lose on extreme configurations
@@ -33,6 +36,11 @@ error of a configuration is the largest error of a result in terms of the larges
 the [runtime-assembled model](glossary.md#runtime-assembled-model), eq. (17) by LU with pivoting, on the same states; it
 has no u̇, so beside functions that give u̇, whose errors are in terms of the largest of u̇ and v̇, the table shows its
 error in v̇.
+
+Parameters may take any value, so of small trees only the form that cancels nothing is accurate enough to be taken.
+Where the numbers are folded into a module, the shortest form that is as accurate for these numbers is: in the last
+table of each mechanism a module is generated for each configuration, for every fortieth of them. *In joint frames*: the
+modules that go from base inertial parameters, in frames that suit the joints.
 
 ";
 
@@ -69,6 +77,7 @@ pub(crate) fn report(pages: &[PathBuf], configurations: usize) -> Result<String,
     let mut text = HEAD.replace("COUNT", &configurations.to_string());
     for model in models(pages)? {
         text += &table(&model, configurations)?;
+        text += &table_of_folded(&model, configurations.div_ceil(FOLDED_ONE_IN))?;
     }
     Ok(text)
 }
@@ -134,14 +143,22 @@ impl Subject {
 
     /// Errors of some configurations of the kind at this place of [`KINDS`].
     fn errors(&self, place: usize, configurations: usize) -> Vec<Errors> {
-        let Some(layout) = &self.module.joints else { return Vec::new() };
-        let sizes = (layout.n_coordinates, layout.n_rates);
-        let of = |n: usize| {
-            let mut random = ChaCha8Rng::seed_from_u64(SEED + (place * configurations + n) as u64);
-            let kind = KINDS[place].0;
-            Configuration::draw(&self.model, &self.module, kind, sizes, &mut random).errors(&self.module)
-        };
+        let of = |n: usize| self.draw(place, (n, configurations))?.errors(&self.module);
         (0..configurations).into_par_iter().filter_map(of).collect()
+    }
+
+    /// The same of modules with the numbers of each configuration.
+    fn folded_errors(&self, original: &Model, place: usize, configurations: usize) -> Vec<Folded> {
+        let of = |n: usize| self.draw(place, (n, configurations))?.folded_errors(original);
+        (0..configurations).into_par_iter().filter_map(of).collect()
+    }
+
+    /// One of so many configurations of a kind.
+    fn draw(&self, place: usize, (n, configurations): (usize, usize)) -> Option<Configuration> {
+        let layout = self.module.joints.as_ref()?;
+        let sizes = (layout.n_coordinates, layout.n_rates);
+        let mut random = ChaCha8Rng::seed_from_u64(SEED + (place * configurations + n) as u64);
+        Some(Configuration::draw(&self.model, &self.module, KINDS[place].0, sizes, &mut random))
     }
 }
 
@@ -163,6 +180,34 @@ fn table(model: &Model, configurations: usize) -> Result<String, Failure> {
     }
     text.push('\n');
     Ok(text)
+}
+
+/// Of `joint_accelerations` of modules with the numbers of each configuration: its errors, and how many of the modules
+/// take a form in joint frames, from base inertial parameters.
+fn table_of_folded(model: &Model, configurations: usize) -> Result<String, Failure> {
+    let _spinner = Spinner::new(format!("generating {} with numbers", model.name));
+    let subject = Subject::new(model)?;
+    let mut text = format!(
+        "## {}, its numbers folded\n\n| configurations | in joint frames | median | worst | failures | dense: median | worst | failures |\n|---|---|---|---|---|---|---|---|\n",
+        model.name
+    );
+    for (place, (_, words)) in KINDS.into_iter().enumerate() {
+        let found = subject.folded_errors(model, place, configurations);
+        let of = |column: fn(&Folded) -> f64| Column::of(found.iter().map(column).collect());
+        let (own, dense) = (of(|folded| folded.own), of(|folded| folded.dense));
+        let n_in_frames = found.iter().filter(|folded| folded.is_in_joint_frames).count();
+        let _ = writeln!(text, "| {words} | {n_in_frames} of {} | {own} | {dense} |", found.len());
+    }
+    text.push('\n');
+    Ok(text)
+}
+
+/// What became of a configuration with a module of its own.
+struct Folded {
+    /// Error of u̇.
+    own: f64,
+    dense: f64,
+    is_in_joint_frames: bool,
 }
 
 /// A mechanism with its parameters, and a state.
@@ -225,6 +270,38 @@ impl Configuration {
         let size = if is(Kind::Violated) { 1e-2 } else { 0.0 };
         let violation = module.start.iter().map(|_| size * random.random_range(-1.0..1.0)).collect();
         Self { model, joints, violation }
+    }
+
+    /// The same with numbers in the place of the parameters that [`freed`] has added to those of `original`.
+    fn folded(mut self, original: &Model) -> Self {
+        let parameters = self.model.parameters.split_off(original.parameters.len());
+        let fold = |number: &mut Number| {
+            if let Number::Parameter { index, .. } = number
+                && let Some(parameter) = index.checked_sub(original.parameters.len()).map(|k| &parameters[k])
+            {
+                *number = Number::Exact(parameter.value.clone());
+            }
+        };
+        for body in &mut self.model.bodies {
+            std::iter::once(&mut body.mass).chain(&mut body.inertia).for_each(fold);
+        }
+        for joint in &mut self.model.joints {
+            joint.first.point.iter_mut().chain(&mut joint.second.point).for_each(fold);
+        }
+        self
+    }
+
+    /// Of a module with the numbers of this configuration.
+    fn folded_errors(self, original: &Model) -> Option<Folded> {
+        let folded = self.folded(original);
+        let functions = Functions::named(["maximal", "reactions"]).ok()?;
+        let generated = gyro_codegen::generate_functions("model.toml", &folded.model, &functions).ok()?;
+        let module = Module::read(&folded.model, &generated.code, &generated.constants).ok()?;
+        let forms = &generated.data_sheet.function(Kernel::JointAccelerations)?.forms;
+        let is_in_joint_frames = forms.iter().any(|form| form.is_taken && form.name.contains("joint frames"));
+        let (errors, dense) = folded.errors(&module)?;
+        let place = KERNELS.iter().position(|kernel| *kernel == Kernel::JointAccelerations.name())?;
+        Some(Folded { own: errors[place], dense, is_in_joint_frames })
     }
 
     fn errors(&self, module: &Module) -> Option<Errors> {
@@ -300,6 +377,21 @@ mod tests {
         for model in models(&[]).unwrap() {
             check(&Subject::new(&model).unwrap());
         }
+    }
+
+    /// Of modules with numbers, whose joint dynamics are in joint frames and from base inertial parameters.
+    #[test]
+    fn joint_frames_and_base_parameters_take_no_digits() {
+        let chain = models(&[]).unwrap().pop().unwrap();
+        let subject = Subject::new(&chain).unwrap();
+        let mut n_in_frames = 0;
+        for (place, (_, words)) in KINDS.into_iter().enumerate().step_by(3) {
+            for folded in subject.folded_errors(&chain, place, 1) {
+                assert!(folded.own <= MEDIAN.max(WORST * folded.dense), "{words}: {:e}", folded.own);
+                n_in_frames += usize::from(folded.is_in_joint_frames);
+            }
+        }
+        assert!(n_in_frames >= 2, "{n_in_frames}");
     }
 
     fn check(subject: &Subject) {

@@ -279,7 +279,8 @@ fn unavailable(model: &Model, module: &Module) -> Vec<String> {
     lines
 }
 
-/// `| phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 |`; what gives no numbers has no row.
+/// `| phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 |`, with the loops in which it is computed if
+/// there are some; what gives no numbers has no row.
 fn row(model: &Model, module: &Module, name: &str, program: &Program) -> Option<String> {
     let computes = words(name)?.computes;
     let operations = Operations::of(program);
@@ -305,8 +306,13 @@ fn row(model: &Model, module: &Module, name: &str, program: &Program) -> Option<
     };
     let Operations { additions, multiplications, divisions, .. } = operations;
     let total = operations.total();
+    let loops = match program.loops_that_compute() {
+        0 => String::new(),
+        1 => ", in a loop".to_owned(),
+        n => format!(", in {n} loops"),
+    };
     (results > 0).then(|| {
-        format!("| {name} | {computes} | {additions} | {multiplications} | {divisions} | {total} | {zeros} of {results} |")
+        format!("| {name} | {computes}{loops} | {additions} | {multiplications} | {divisions} | {total} | {zeros} of {results} |")
     })
 }
 

@@ -1,5 +1,7 @@
 //! A function of a module as a straight-line program.
 
+use std::collections::BTreeSet;
+
 /// Place of a value in [`Program::nodes`].
 pub type Id = usize;
 
@@ -127,6 +129,14 @@ impl Node {
 }
 
 impl Program {
+    /// Loops with operations; others only store results, or their negatives.
+    pub fn loops_that_compute(&self) -> usize {
+        let is_operation = |node: &Node| !matches!(node, Node::Constant(_) | Node::Read(_) | Node::Neg(_));
+        let operations = self.nodes.iter().zip(&self.lines).filter(|(node, _)| is_operation(node));
+        let lines: BTreeSet<usize> = operations.map(|(_, &line)| line).collect();
+        self.loops.iter().filter(|&&(from, to)| lines.range(from..=to).next().is_some()).count()
+    }
+
     /// Adds a node.
     pub fn push(&mut self, node: Node, line: usize) -> Id {
         self.nodes.push(node);

@@ -140,7 +140,22 @@ impl Page<'_> {
                 ));
             }
         }
+        remarks.extend(self.remark_on_transmissions());
         remarks
+    }
+
+    /// Transmissions may be those of one simulator's plugins, or be left out of a file altogether: every joint gets its
+    /// motor, and those that the file has none for are named.
+    fn remark_on_transmissions(&self) -> Option<String> {
+        let transmitted = &self.robot.transmitted;
+        let others = self.motors().filter(|&joint| !transmitted.contains(&self.robot.joints[joint].name));
+        let others: Vec<String> = others.map(|joint| format!("`{}`", self.joints[joint])).collect();
+        (!transmitted.is_empty() && !others.is_empty()).then(|| {
+            format!(
+                "--motors: these have a motor though no <transmission> names them: {}",
+                words::listed(&others)
+            )
+        })
     }
 
     fn head(&self, file: &str, remarks: &[String]) -> String {

@@ -7,7 +7,7 @@ use super::shapes;
 use crate::words;
 use nalgebra::{IsometryMatrix3, Matrix3, Vector3};
 use roxmltree::{Document, Node};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A robot whose joints make a tree.
 #[derive(Debug)]
@@ -15,6 +15,8 @@ pub(super) struct Robot {
     pub(super) name: String,
     pub(super) links: Vec<Link>,
     pub(super) joints: Vec<Joint>,
+    /// Names of joints that transmissions name: in ROS those that have an actuator.
+    pub(super) transmitted: BTreeSet<String>,
     /// What has no counterpart in a model file.
     pub(super) remarks: Vec<String>,
 }
@@ -133,7 +135,10 @@ fn robot(findings: &mut Findings<'_>, root: Node<'_, '_>) -> Robot {
     }
     remark_on_shapes(findings, root, &links);
     let name = root.attribute("name").unwrap_or("robot").to_owned();
-    Robot { name, links, joints, remarks: Vec::new() }
+    let transmissions = elements("transmission").flat_map(|node| node.descendants());
+    let transmitted = transmissions.filter(|node| node.has_tag_name("joint"));
+    let transmitted = transmitted.filter_map(|node| node.attribute("name")).map(str::to_owned).collect();
+    Robot { name, links, joints, transmitted, remarks: Vec::new() }
 }
 
 /// One remark on all shapes that are left out.

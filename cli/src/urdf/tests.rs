@@ -258,6 +258,17 @@ fn motors_and_stops_are_made_on_request() {
         assert!(remarks.iter().any(|remark| remark == words), "{words} is missing in {remarks:#?}");
     }
     gyro_model::read("r.toml", &page).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    // Transmissions name some of them.
+    assert!(remarks.iter().all(|remark| !remark.contains("--motors")), "{remarks:#?}");
+    let transmission = r#"<transmission name="t"><joint name="l"><hardwareInterface/></joint><actuator name="a"/></transmission>"#;
+    let with_transmission = robot(&format!("{rest}\n{transmission}"));
+    let words = "--motors: these have a motor though no <transmission> names them: `j`, `m`";
+    for (motors, is_told) in [(true, true), (false, false)] {
+        let wishes = Wishes { motors, ..PLAIN };
+        let (page, remarks) = super::convert("r.urdf", "r.urdf", &with_transmission, wishes).unwrap();
+        assert_eq!(remarks.iter().any(|remark| remark == words), is_told, "{remarks:#?}");
+        assert_eq!(page.matches("kind = \"motor\"").count(), if motors { 3 } else { 0 }, "{page}");
+    }
     let (page, _) = convert(Wishes { armature: Some(0.02), ..PLAIN });
     let model = gyro_model::read("r.toml", &page).unwrap_or_else(|mistakes| panic!("{mistakes}"));
     let armatures: Vec<f64> = model.joints.iter().map(|joint| model.value(&joint.armature)).collect();

@@ -177,8 +177,13 @@ impl Function {
 
     fn row(&self) -> String {
         let Operations { additions, multiplications, divisions, .. } = self.operations;
+        let loops = match self.repetition.map_or(0, |repetition| repetition.loops) {
+            0 => String::new(),
+            1 => ", in a loop".to_owned(),
+            n => format!(", in {n} loops"),
+        };
         format!(
-            "| {} | {} | {additions} | {multiplications} | {divisions} | {} | {} of {} |",
+            "| {} | {}{loops} | {additions} | {multiplications} | {divisions} | {} | {} of {} |",
             self.kernel.name(),
             self.kernel.computes(),
             self.operations.total(),

@@ -1,8 +1,8 @@
 //! The scenes on a Cortex-M under QEMU.
 //!
 //! `control` is firmware as a user would write it. `runs` prints the bits that are compared with the host's,
-//! `figures` counts instructions, `stabilised` does both for stops and friction. All of it links only if no panic can
-//! be reached: see [`panic`](mod@panic).
+//! `figures` counts instructions, `stabilised` does both for stops and friction, and `quadruped` for a robot. All of it
+//! links only if no panic can be reached: see [`panic`](mod@panic).
 #![no_std]
 
 pub mod board;
@@ -10,5 +10,6 @@ pub mod control;
 pub mod figures;
 pub mod panic;
 pub mod print;
+pub mod quadruped;
 pub mod runs;
 pub mod stabilised;

@@ -2,6 +2,7 @@
 
 use crate::mechanisms::chain::Chain;
 use crate::mechanisms::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
+use crate::mechanisms::long_chain::LongChain;
 use crate::runs::{CHAIN, PAPER, STEPS, Settings, time};
 use crate::{Minimal, Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
@@ -61,7 +62,7 @@ pub trait Clock {
 pub type Measured<C> = (&'static str, fn(&mut C) -> Result<(), Error>);
 
 /// All of them.
-pub fn measured<T: Real, C: Clock>() -> [Measured<C>; 8] {
+pub fn measured<T: Real, C: Clock>() -> [Measured<C>; 9] {
     [
         ("paper maximal", |clock| maximal(&Gyroscope::<T>::default(), PAPER, clock)),
         ("paper joint", |clock| joint(&Gyroscope::<T>::default(), PAPER, clock)),
@@ -69,6 +70,7 @@ pub fn measured<T: Real, C: Clock>() -> [Measured<C>; 8] {
         ("misaligned joint", |clock| joint(&GyroscopeCombinedOffsets::<T>::default(), PAPER, clock)),
         ("chain maximal", |clock| maximal(&Chain::<T>::default(), CHAIN, clock)),
         ("chain joint", |clock| joint(&Chain::<T>::default(), CHAIN, clock)),
+        ("long-chain joint", |clock| joint(&LongChain::<T>::default(), CHAIN, clock)),
         ("paper by-hand", |clock| {
             first_order((&Minimal::<T>::new(), &()), Minimal::<T>::start(), PAPER, clock)
         }),

@@ -1,7 +1,8 @@
 //! What the firmware runs, written so that the host can run it too: the same source, the same bits.
 //!
 //! [`Simulator`] is a gimbal under rate control as a user would write it, [`stabilised`] a camera with stops and
-//! bearings that stick, [`runs`] are the runs whose bits are compared, [`kernels`] what is measured.
+//! bearings that stick, [`quadruped`] a robot, [`runs`] are the runs whose bits are compared, [`kernels`] what is
+//! measured.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -10,6 +11,7 @@ mod digest;
 pub mod kernels;
 pub mod mechanisms;
 mod minimal;
+pub mod quadruped;
 pub mod runs;
 mod simulator;
 pub mod stabilised;

@@ -5,4 +5,6 @@
 include!("../generated/chain.rs");
 include!("../generated/gimbal.rs");
 include!("../generated/gyroscope_combined_offsets.rs");
+include!("../generated/long_chain.rs");
+include!("../generated/quadruped.rs");
 include!("../generated/stabilised_gimbal.rs");

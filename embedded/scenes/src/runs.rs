@@ -4,6 +4,7 @@ use crate::digest::Digest;
 use crate::mechanisms::chain::Chain;
 use crate::mechanisms::gimbal::{Gimbal, Parameters};
 use crate::mechanisms::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
+use crate::mechanisms::long_chain::LongChain;
 use crate::{Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::{
@@ -46,7 +47,7 @@ pub struct Outcome<T> {
 pub type Run<T> = (&'static str, fn() -> Result<Outcome<T>, Error>);
 
 /// All of them.
-pub fn runs<T: Bits>() -> [Run<T>; 11] {
+pub fn runs<T: Bits>() -> [Run<T>; 12] {
     [
         ("paper maximal", || maximal(&Gyroscope::default(), PAPER)),
         ("paper 2e-4 maximal", || maximal(&Gyroscope::default(), Settings { step: 2e-4, intervals: 1000 })),
@@ -57,6 +58,7 @@ pub fn runs<T: Bits>() -> [Run<T>; 11] {
         ("misaligned joint", || joint(&GyroscopeCombinedOffsets::default(), PAPER)),
         ("chain maximal", || maximal(&Chain::default(), CHAIN)),
         ("chain joint", || joint(&Chain::default(), CHAIN)),
+        ("long-chain joint", || joint(&LongChain::default(), CHAIN)),
         ("control", control),
         ("driven", driven),
     ]

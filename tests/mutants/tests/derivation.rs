@@ -3,11 +3,11 @@
 #![allow(clippy::print_stdout, reason = "the list of survivors is for readers")]
 
 use gyro_model::Model;
-use gyro_mutants::{Functions, generate_functions, switch_on};
+use gyro_mutants::{Functions, Kernel, generate_functions, switch_on};
 use gyro_verifier::module::Module;
 use gyro_verifier::proof::{Claim, Decider, Verdict, prime};
 use gyro_verifier::{Depth, verify};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -51,17 +51,32 @@ fn written(model: &Model, fault: usize) -> Option<gyro_mutants::Module> {
 /// Seed of the primes and points.
 const SEED: u64 = 13;
 
-/// Whether a claim about a module is refuted; the first that is ends the search. `None` if the prime has not enough
-/// bits.
-fn is_refuted<const L: usize>(model: &Model, module: &Module) -> Option<bool> {
+/// The claims about a module that are refuted: all of those about functions on request, and the first of the others if
+/// there is none of these. `None` if the prime has not enough bits.
+fn refuted<const L: usize>(model: &Model, module: &Module) -> Option<Vec<Claim>> {
     let decider = Decider::<L>::new(model, prime(model, module, SEED).ok()?);
-    let mut verdicts = Claim::all(module).into_iter().map(|claim| decider.decide(module, claim, 1, SEED));
-    Some(verdicts.any(|verdict| matches!(verdict, Verdict::Refuted { .. } | Verdict::Divides { .. })))
+    let is_refuted = |claim: &Claim| {
+        let verdict = decider.decide(module, *claim, 1, SEED);
+        matches!(verdict, Verdict::Refuted { .. } | Verdict::Divides { .. })
+    };
+    let (on_request, usual): (Vec<_>, Vec<_>) = Claim::all(module).into_iter().partition(is_on_request);
+    let found: Vec<_> = on_request.into_iter().filter(is_refuted).collect();
+    Some(if found.is_empty() { usual.into_iter().find(is_refuted).into_iter().collect() } else { found })
+}
+
+/// Functions that a module has only where they are asked for: those that solvers do not call.
+fn on_request() -> impl Iterator<Item = &'static str> {
+    let solvers = Functions::of_solvers();
+    Kernel::all().filter(move |kernel| !solvers.has(kernel.group())).map(Kernel::name)
+}
+
+fn is_on_request(claim: &Claim) -> bool {
+    on_request().any(|function| claim.functions().contains(&function))
 }
 
 /// What became of a fault.
 enum Fate {
-    Refuted,
+    Refuted(Vec<Claim>),
     /// Nothing readable was written.
     Unwritten,
     Harmless(&'static str),
@@ -76,8 +91,8 @@ fn fate(model: &Model, fault: usize, harmless: Option<&'static str>) -> Fate {
     }
     // The formulas must be refuted: that a fault shows in the structure of the text does not count.
     let Ok(module) = Module::read(model, &text.code, &text.constants) else { return Fate::Unwritten };
-    match is_refuted::<9>(model, &module).or_else(|| is_refuted::<36>(model, &module)) {
-        Some(true) => Fate::Refuted,
+    match refuted::<9>(model, &module).or_else(|| refuted::<36>(model, &module)) {
+        Some(claims) if !claims.is_empty() => Fate::Refuted(claims),
         _ => Fate::Survived,
     }
 }
@@ -107,9 +122,13 @@ fn no_fault_of_the_derivation_survives() {
         threads.into_iter().flat_map(|thread| thread.join().expect("no panic but of the generator")).collect()
     });
     let (mut refuted, mut unwritten, mut survivors) = (0, 0, Vec::new());
+    let mut unharmed: BTreeSet<&str> = on_request().collect();
     for (what, fate) in fates {
         match fate {
-            Fate::Refuted => refuted += 1,
+            Fate::Refuted(claims) => {
+                refuted += 1;
+                claims.iter().flat_map(|claim| claim.functions()).for_each(|f| _ = unharmed.remove(f));
+            }
             Fate::Unwritten => unwritten += 1,
             Fate::Harmless(why) => println!("{what} is proved: {why}"),
             Fate::Survived => survivors.push(what),
@@ -117,4 +136,5 @@ fn no_fault_of_the_derivation_survives() {
     }
     println!("{refuted} faults refuted, {unwritten} after which nothing readable is written");
     assert!(survivors.is_empty(), "{} survivors:\n{}", survivors.len(), survivors.join("\n"));
+    assert!(unharmed.is_empty(), "no fault shows in {unharmed:?}");
 }

@@ -42,7 +42,13 @@ fn loops_are_proved_and_their_faults_are_found() {
     assert!(repetition.loops > 0 && (4..=LINKS).contains(&repetition.copies), "{repetition:?}");
     assert!(2 * repetition.written <= function.operations.total(), "{repetition:?}");
     let is_proved = |code: &str| verify(&model, code, &module.constants, Depth::Quick).is_proved();
-    assert!(is_proved(&module.code), "the module is not proved");
+    let report = verify(&model, &module.code, &module.constants, Depth::Quick);
+    assert!(report.is_proved(), "{report}");
+    // The sheet says what the verifier counts.
+    let row = format!("eq. (17), in {} loops |", repetition.loops);
+    assert!(module.code.contains(&row), "no row with `{row}`");
+    let other = format!("eq. (17), in {} loops |", repetition.loops + 1);
+    assert!(!is_proved(&module.code.replace(&row, &other)), "a wrong number of loops is not found");
     for (from, to) in [
         // A loop that ends too early.
         ("for i in (0..", "for i in (1.."),

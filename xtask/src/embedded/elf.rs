@@ -13,6 +13,7 @@ use std::path::Path;
 pub(crate) struct Elf {
     sizes: BTreeMap<String, u64>,
     symbols: Vec<(u64, String)>,
+    lengths: BTreeMap<String, u64>,
     stack_sizes: BTreeMap<u64, u64>,
 }
 
@@ -28,19 +29,26 @@ impl Elf {
         for section in file.sections() {
             sizes.insert(section.name()?.to_owned(), section.size());
         }
-        let mut symbols = Vec::new();
+        let (mut symbols, mut lengths) = (Vec::new(), BTreeMap::new());
         for symbol in file.symbols() {
             // The lowest bit of an address says that the code is Thumb's.
             symbols.push((symbol.address() & !1, symbol.name()?.to_owned()));
+            lengths.insert(symbol.name()?.to_owned(), symbol.size());
         }
         symbols.retain(|(_, name)| !name.is_empty());
         let stack = file.section_by_name(".stack_sizes").map_or(Ok(&[][..]), |section| section.data())?;
-        Ok(Self { sizes, symbols, stack_sizes: stack_sizes(stack) })
+        Ok(Self { sizes, symbols, lengths, stack_sizes: stack_sizes(stack) })
     }
 
     /// Bytes of a section; none if there is none.
     pub(crate) fn size(&self, section: &str) -> u64 {
         self.sizes.get(section).copied().unwrap_or(0)
+    }
+
+    /// Bytes of the functions whose mangled names contain this; none if there are none, as they were inlined.
+    pub(crate) fn length(&self, name: &str) -> Option<u64> {
+        let found = self.lengths.iter().filter(|(mangled, length)| mangled.contains(name) && **length > 0);
+        found.map(|(_, length)| *length).reduce(|sum, length| sum + length)
     }
 
     /// Address and name of all symbols.

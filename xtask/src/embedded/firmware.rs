@@ -55,7 +55,7 @@ impl Chip {
 }
 
 /// What the firmware's package has in every precision.
-pub(crate) const PROGRAMS: [&str; 4] = ["control", "runs", "figures", "stabilised"];
+pub(crate) const PROGRAMS: [&str; 5] = ["control", "runs", "figures", "stabilised", "quadruped"];
 
 /// A program for a chip.
 #[derive(Clone, Debug)]

@@ -37,21 +37,25 @@ pub(crate) fn counts(boards: &[Board]) -> String {
     text
 }
 
+/// The function of a module that has its joint dynamics, where it is one of its own: as symbols have its name.
+const ACCELERATIONS: &str = "19joint_accelerations";
+
 /// Flash, RAM and stack of the control loop.
 pub(crate) fn sizes(boards: &[Board], foreign: &Sizes) -> Result<String, Failure> {
     let mut text =
-        "| program | text | constants | statics | state and workspace | stack used | stack, bound |\n\
-                    |---|---|---|---|---|---|---|\n"
+        "| program | text | of it accelerations | constants | statics | state and workspace | stack used | stack, bound |\n\
+                    |---|---|---|---|---|---|---|---|\n"
             .to_owned();
     for board in boards {
         for (ran, bound) in board.programs.iter().filter_map(|ran| Some((ran, ran.stack.as_ref()?))) {
             let elf = ran.elf()?;
             let [code, constants] = [".text", ".rodata"].map(|section| elf.size(section));
             let statics = elf.size(".data") + elf.size(".bss");
+            let accelerations = elf.length(ACCELERATIONS).map_or_else(String::new, |bytes| bytes.to_string());
             let known = |bytes: Option<u32>| bytes.map_or_else(String::new, |bytes| bytes.to_string());
             let _ = writeln!(
                 text,
-                "| {}, {} | {code} | {constants} | {statics} | {} | {} | {} |",
+                "| {}, {} | {code} | {accelerations} | {constants} | {statics} | {} | {} | {} |",
                 ran.program.name,
                 board.chip.name(),
                 known(ran.output.ram),
@@ -61,8 +65,8 @@ pub(crate) fn sizes(boards: &[Board], foreign: &Sizes) -> Result<String, Failure
         }
     }
     let Sizes { c, wasm } = foreign;
-    let _ = writeln!(text, "| example in C, Cortex-M7 | {c} | | | | | |");
-    let _ = writeln!(text, "| module of WebAssembly, whole file | {wasm} | | | | | |");
+    let _ = writeln!(text, "| example in C, Cortex-M7 | {c} | | | | | | |");
+    let _ = writeln!(text, "| module of WebAssembly, whole file | {wasm} | | | | | | |");
     Ok(text)
 }
 
