@@ -219,10 +219,12 @@ impl Planning<'_> {
             }
             let component = self.component[group[0]];
             let direction = if is_cycle { Some(self.direction(&group)?) } else { None };
-            let least = |unit: &Unit| {
-                let is_elsewhere = *unit < n_orbits && self.component[*unit] != component;
-                level[*unit] + usize::from(is_elsewhere)
+            let is_function = |orbit: Orbit| self.terms.all[self.orbits.members[orbit][0]].kind.is_function();
+            // Functions have a loop of their own: around a call nothing stays in a processor's registers.
+            let is_elsewhere = |orbit: Orbit| {
+                self.component[orbit] != component || is_function(orbit) != is_function(group[0])
             };
+            let least = |unit: &Unit| level[*unit] + usize::from(*unit < n_orbits && is_elsewhere(*unit));
             let before = group.iter().flat_map(|&unit| &operands[unit]).filter(|unit| !group.contains(unit));
             let mut at = before.map(least).max().unwrap_or(0);
             let conflicts =

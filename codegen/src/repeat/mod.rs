@@ -11,6 +11,7 @@ mod columns;
 mod kernel;
 mod loops;
 mod orbits;
+mod recurrence;
 mod rolled;
 mod shift;
 mod signs;
@@ -73,6 +74,7 @@ pub fn rolled(
     let is_thorough = effort == Effort::Full && n_operations >= LARGE.n_least;
     let n_ways = if is_thorough { WAYS.len() } else { 1 };
     rolled_by(&WAYS[..n_ways], n_operations.div_ceil(size.shorter), (graph, roots), element)
+        .map(Rolled::hastened)
 }
 
 /// The same in some ways, if its text is shorter than this.

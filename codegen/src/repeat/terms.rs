@@ -43,6 +43,11 @@ impl Kind {
     pub fn is_operation(self) -> bool {
         !matches!(self, Self::Variable { .. } | Self::Constant)
     }
+
+    /// Whether it is a call of a function.
+    pub fn is_function(self) -> bool {
+        matches!(self, Self::Sine | Self::Cosine | Self::HyperbolicTangent | Self::Angle)
+    }
 }
 
 /// A term and whether its opposite is taken.

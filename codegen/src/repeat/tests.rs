@@ -161,7 +161,15 @@ fn check(page: &str, wanted: &[Kernel]) -> Vec<(usize, usize)> {
             let expected = evaluate(graph, roots, single);
             assert_eq!(run(&rolled, &single), expected, "{kernel:?}, seed {seed}, single precision");
         }
-        (straight, rolled.n_written())
+        let (n_executed, n_written) = (rolled.executed().total(), rolled.n_written());
+        let hastened = rolled.hastened();
+        assert!(hastened.executed().total() <= n_executed, "{kernel:?}");
+        let expected = evaluate(graph, roots, sample(0));
+        let largest = expected.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+        for (found, expected) in run(&hastened, &sample(0)).into_iter().zip(expected) {
+            assert!((found - expected).abs() <= 1e-10 * largest, "{kernel:?}: {found} for {expected}");
+        }
+        (straight, n_written)
     });
     sizes.collect()
 }
