@@ -11,7 +11,7 @@ use super::write::{CHOICES, own};
 use crate::args::{Engine, Precision};
 use crate::failure::Failure;
 use crate::words::number;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const HEAD: [&str; 9] = [
     "scene",
@@ -52,6 +52,13 @@ pub(crate) fn add(study: &Study, machine: &str, folder: &Path) -> Result<(), Fai
 pub(crate) fn kept(folder: &Path, machine: &str, kept: &[&str]) -> String {
     let [scenes, goals] = ["index.csv", "goals.csv"].map(|file| rows(&folder.join(file)));
     page(scenes, goals, machine, Some(kept)).markdown()
+}
+
+/// Whether the index of a folder has a line for each of these model files.
+pub(crate) fn has_all(folder: &Path, models: &[PathBuf]) -> bool {
+    let rows = rows(&folder.join("index.csv"));
+    let stems = models.iter().filter_map(|path| path.file_stem());
+    stems.into_iter().all(|stem| rows.iter().any(|row| row.first().is_some_and(|scene| *stem == **scene)))
 }
 
 /// The rows of a table; none if there is no such file.
@@ -121,7 +128,7 @@ fn page(scenes: Vec<Vec<String>>, goals: Vec<Vec<String>>, machine: &str, kept: 
     if kept.is_some() {
         page.text(
             "Only the pages with a link are kept here. `cargo xtask report` writes those of all scenes, each also as one HTML file, and the raw \
-             data to `out/report`; `cargo xtask report models/torsion.toml` those of one.",
+             data to `out/report`; `cargo xtask report models/torsion.toml` those of one, whose line here is then new.",
         );
     }
     let linked = |mut row: Vec<String>| {

@@ -64,7 +64,10 @@ pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
         missed.extend(study.goals.into_iter().filter(|goal| !goal.is_met()));
         eprintln!("wrote {}", folder.join(format!("{}.md", study.lab.name)).display());
     }
-    if args.models.is_empty() && args.out.is_none() && !args.quick {
+    // Pages of some scenes replace what is kept of them, if all others stand in the index.
+    let shipped = files::workspace().map(|root| shipped(&root.join("models"))).transpose()?;
+    let is_whole = shipped.is_some_and(|shipped| index::has_all(&folder, &shipped));
+    if is_whole && args.out.is_none() && !args.quick {
         let docs = root.join("docs").join("report");
         kept::keep(&folder, &docs, &machine)?;
         eprintln!("wrote what is kept of it to {}", docs.display());
@@ -97,15 +100,18 @@ fn pages(args: &ReportArgs) -> Result<Vec<PathBuf>, Failure> {
     let models = files::workspace().ok_or_else(no_model_file)?.join("models");
     match args.quick {
         true => Ok(vec![models.join("gyroscope.toml")]),
-        false => {
-            let entries = fs::read_dir(&models).map_err(|e| unusable(&models, &e))?;
-            let paths = entries.map(|entry| entry.map(|entry| entry.path()));
-            let mut paths = paths.collect::<Result<Vec<_>, _>>().map_err(|e| unusable(&models, &e))?;
-            paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-            paths.sort();
-            Ok(paths)
-        }
+        false => shipped(&models),
     }
+}
+
+/// The shipped model files.
+fn shipped(models: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let entries = fs::read_dir(models).map_err(|e| unusable(models, &e))?;
+    let paths = entries.map(|entry| entry.map(|entry| entry.path()));
+    let mut paths = paths.collect::<Result<Vec<_>, _>>().map_err(|e| unusable(models, &e))?;
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    paths.sort();
+    Ok(paths)
 }
 
 fn unusable(path: &Path, error: &io::Error) -> Failure {
