@@ -189,6 +189,12 @@ impl JointForm {
 }
 
 fn scheduled(equations: &Equations, kernels: &Kernels, kernel: Kernel) -> ScheduledKernel {
+    let (places, roots) = written(equations, kernels, kernel);
+    ScheduledKernel { tape: rounded(equations, &tape(equations, &roots).0), places }
+}
+
+/// What a kernel writes, with its places in the state if these are not all of them.
+pub fn written(equations: &Equations, kernels: &Kernels, kernel: Kernel) -> (Vec<usize>, Vec<ExprId>) {
     use Kernel::{
         ClosePositions, CloseVelocities, CorrectedDerivative, Derivative, JointDerivative, NewtonStep,
         SolveVelocities, ToMaximal,
@@ -197,14 +203,13 @@ fn scheduled(equations: &Equations, kernels: &Kernels, kernel: Kernel) -> Schedu
     let without = |from: usize, n: usize| (0..from).chain(from + n..).zip(roots.iter().copied()).unzip();
     let n_bodies = equations.n_moving_bodies();
     let n_rates = equations.joint_space.as_ref().map_or(0, |space| space.layout.n_rates);
-    let (places, roots): (Vec<usize>, Vec<ExprId>) = match kernel {
+    match kernel {
         NewtonStep | SolveVelocities | ClosePositions | CloseVelocities => stores(equations, kernel, roots),
         Derivative | CorrectedDerivative => without(7 * n_bodies, 6 * n_bodies),
         JointDerivative => without(equations.n_coordinates(), n_rates),
         ToMaximal => without(13 * n_bodies, usize::from(equations.power.is_some())),
         _ => (Vec::new(), roots.to_vec()),
-    };
-    ScheduledKernel { tape: rounded(equations, &tape(equations, &roots).0), places }
+    }
 }
 
 /// The tape of a kernel, and how it is written if it has loops.

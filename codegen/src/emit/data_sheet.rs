@@ -8,6 +8,7 @@ use crate::groups::Group;
 use crate::joint_space::obstacle;
 use crate::kernels::{Kernel, Kernels};
 use crate::repeat::Repetition;
+use crate::scheduled;
 use crate::simplify::cheapest::{Chosen, Form};
 use crate::simplify::normal_form::Reduction;
 use gyro_model::{Model, RowOwner, Support};
@@ -77,7 +78,8 @@ impl DataSheet {
             spared: spared(equations),
             functions: (kernels.iter())
                 .map(|kernel| {
-                    let repetition = repetitions.get(&kernel.1.roots).copied();
+                    let written = || repetitions.get(&scheduled::written(equations, kernels, kernel.0).1);
+                    let repetition = repetitions.get(&kernel.1.roots).or_else(written).copied();
                     let function = Function::of(&equations.graph, kernel);
                     let operations = repetition.map_or(function.operations, |written| written.operations);
                     Function { repetition, operations, ..function }

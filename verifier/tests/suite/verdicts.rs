@@ -362,7 +362,7 @@ fn the_data_sheet_says_what_was_proved() {
     let joints = ["crank_pivot", "rocker_pivot", "elbow", "knee"];
     let stop = "lower = -9\nupper = 9\nrestitution = 0\n";
     let stops = joints.map(|on| format!("[[contact]]\nname = \"{on}_stop\"\njoint = \"{on}\"\n{stop}"));
-    let page = crate::support::generate_text("stopped.toml", &format!("{linkage}\n{}", stops.concat()));
+    let page = generate_text("stopped.toml", &format!("{linkage}\n{}", stops.concat()));
     let report = verify(&page.model, &page.code, &page.constants, Depth::Quick);
     assert!(report.section().join("\n").contains("Not proved: the choice of coordinates"), "{report}");
 }
