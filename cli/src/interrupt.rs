@@ -41,11 +41,13 @@ pub(crate) fn was_interrupted() -> bool {
     WAS_INTERRUPTED.load(Ordering::SeqCst)
 }
 
-/// What ends a run in this process at its next event once it was interrupted.
+/// What ends a run in this process at its next event once it was interrupted: after a forecast not before the first
+/// sample, so that there is a part to keep.
 pub(crate) fn interruptible(tell: &mut dyn FnMut(Event<'_>)) -> impl FnMut(Event<'_>) -> io::Result<()> {
     |event| {
+        let is_under_way = !matches!(event, Event::Forecast(_));
         tell(event);
-        if was_interrupted() { Err(io::ErrorKind::Interrupted.into()) } else { Ok(()) }
+        if is_under_way && was_interrupted() { Err(io::ErrorKind::Interrupted.into()) } else { Ok(()) }
     }
 }
 

@@ -4,9 +4,11 @@
 //! Where charts do not reach, a mechanism that has joint coordinates is partitioned in them, by the functions of its
 //! [`JointSpace`]: unrolled, and of the size of what closes its loops rather than of Φ_q. A step reads the coordinates
 //! of the tree off the maximal state, closes loops by the smallest change of these, and places the bodies anew. Nothing
-//! else of the tree's coordinates changes; couplers and drivers are satisfied by construction, and so are the rows of
-//! all joints of the tree. As none of a loop's coordinates is preferred, there is no choice that could become a poor
-//! one. A generated mechanism calls these functions from its [`Partition`](crate::Partition), one line each.
+//! else of the tree's coordinates changes; drivers are satisfied by construction, and so are the rows of all joints of
+//! the tree. As none of a loop's coordinates is preferred, there is no choice that could become a poor one. Mechanisms
+//! with couplers or screws are left to [`pivoting`](crate::pivoting): the choice of the coordinate that is known best
+//! matters to them, and so do whole turns, which are not read here. A generated mechanism calls these functions from
+//! its [`Partition`](crate::Partition), one line each.
 //!
 //! # Example
 //! ```
@@ -27,7 +29,7 @@
 //! # }
 //! ```
 
-use crate::{Clearance, CloseLoops, Description, Error, JointPlace, JointSpace, Real, Scalar};
+use crate::{Clearance, CloseLoops, Error, JointSpace, Real, Scalar};
 
 /// One Newton step of the positions: closed loops and bodies that their joints hold.
 ///
@@ -42,9 +44,8 @@ pub fn newton_step<M: JointSpace<Scalar: Real>>(
     let mut x = joints(mechanism, t, y);
     CloseLoops::new(mechanism).newton_step(mechanism, t, &mut x)?;
     let placed = placed(mechanism, t, &x);
-    let (n_positions, placed) = (7 * mechanism.description().bodies.len(), placed.as_ref());
-    let (old, new) = (y.as_mut().as_chunks_mut::<7>().0, placed.as_chunks::<7>().0);
-    for (old, new) in old.iter_mut().zip(new).take(n_positions / 7) {
+    let (old, new) = (y.as_mut().as_chunks_mut::<7>().0, placed.as_ref().as_chunks::<7>().0);
+    for (old, new) in old.iter_mut().zip(new).take(mechanism.description().bodies.len()) {
         *old = nearer_sign(old, *new);
     }
     Ok(())
@@ -70,33 +71,13 @@ pub fn clearance<M: JointSpace<Scalar: Real>>(
     CloseLoops::new(mechanism).clearance(mechanism, t, &joints(mechanism, t, y))
 }
 
-/// The joint state of a maximal state: angles on whose whole turns something depends, such as gears and screws,
-/// continue from the state's turn references, others are of one turn, where they have the most digits.
+/// The joint state of a maximal state, angles of one turn, where they have the most digits: that of mechanisms whose
+/// whole turns matter, as those of gears and screws do, is not asked for.
 fn joints<M: JointSpace>(mechanism: &M, t: M::Scalar, y: &M::State) -> M::Joints {
     let mut x = mechanism.joint_start();
-    let (description, layout) = (mechanism.description(), mechanism.joint_layout());
-    let mut rest = x.as_mut();
-    for place in layout.places {
-        let Some((own, others)) = rest.split_at_mut_checked(place.n_coordinates()) else { break };
-        if let JointPlace::Scalar { joint, coordinate } | JointPlace::Turn { joint, coordinate } = *place {
-            let turn = turn_of(description, joint, coordinate).and_then(|turn| y.as_ref().get(turn));
-            own.fill(turn.copied().unwrap_or(M::Scalar::constant(0.0)));
-        }
-        rest = others;
-    }
+    x.as_mut().fill(M::Scalar::constant(0.0));
     mechanism.to_joints(t, y, &mut x);
     x
-}
-
-/// Where the turn reference of a joint's coordinate stands in the state, if there is one.
-fn turn_of(description: &Description<'_>, joint: u16, coordinate: u16) -> Option<usize> {
-    let (joint, coordinate) = (usize::from(joint), usize::from(coordinate));
-    let before = description.joints.iter().take(joint).map(|joint| joint.n_readings());
-    let own =
-        description.joints.get(joint)?.coordinates.iter().take(coordinate).map(|kind| kind.n_readings());
-    let reading = before.chain(own).sum();
-    let turn = description.turn_references.iter().position(|&at| usize::from(at) == reading)?;
-    Some(13 * description.bodies.len() + usize::from(description.has_work) + turn)
 }
 
 fn placed<M: JointSpace>(mechanism: &M, t: M::Scalar, x: &M::Joints) -> M::State {

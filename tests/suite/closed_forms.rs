@@ -146,9 +146,8 @@ const DRIFT: f64 = 1e-11;
 
 /// Of tops that turn faster for their size, of a stop that throws a body back within a hundredth of a second, of rings
 /// that turn fast in gimbal lock, of springs that give up their energy within milliseconds, of a wheel that hops on its
-/// tyre, of a crank that shakes a gyroscope, and of a differential that is followed by the faster of its wheels.
-const FAST: [&str; 8] = [
-    "differential",
+/// tyre, and of a crank that shakes a gyroscope.
+const FAST: [&str; 7] = [
     "spinning-top",
     "stops",
     "gyroscope-gimbal-lock",

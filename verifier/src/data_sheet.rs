@@ -199,7 +199,8 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
     };
     let says =
         |what: &str| module.data_sheet.iter().any(|line| line.strip_prefix("* left out: ") == Some(what));
-    let through_joints = has_joints && model.joints.iter().all(|joint| joint.kind != JointKind::Screw);
+    let has_screw = model.joints.iter().any(|joint| joint.kind == JointKind::Screw);
+    let through_joints = has_joints && model.couplers.is_empty() && !has_screw;
     let missing = [
         (!has_joints, said("joint coordinates", "joint coordinates (functions = [\"joint\"] asks for them)")),
         (

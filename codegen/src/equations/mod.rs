@@ -104,10 +104,10 @@ pub enum PartitionForm {
     Pivoting,
 }
 
-/// Whether it has screws. How far one has turned is known best from its displacement, which a method integrates with no
-/// error of phase, and only pivoting keeps that.
-pub fn turns_screws(model: &Model) -> bool {
-    model.joints.iter().any(|joint| joint.kind == JointKind::Screw)
+/// Whether parts of it are geared. Where they are is known best from the slowest of them, or from a displacement: a
+/// method integrates these with the least error of phase, and only pivoting looks for them.
+pub fn is_geared(model: &Model) -> bool {
+    !model.couplers.is_empty() || model.joints.iter().any(|joint| joint.kind == JointKind::Screw)
 }
 
 /// The partition by charts.
@@ -135,7 +135,7 @@ impl<'m> Equations<'m> {
     pub fn partition_form(&self) -> PartitionForm {
         if self.charts.is_some() {
             PartitionForm::Charts
-        } else if self.joint_space.is_some() && !turns_screws(self.model) {
+        } else if self.joint_space.is_some() && !is_geared(self.model) {
             PartitionForm::Joints
         } else {
             PartitionForm::Pivoting

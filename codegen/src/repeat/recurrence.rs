@@ -235,6 +235,20 @@ mod tests {
         assert_eq!([before.length(), before.reordered().length()], [5 * SUM * PARTS, SUM * PARTS]);
     }
 
+    /// The graph writes no such sum of itself: the first term of its sums has no sign.
+    #[test]
+    fn a_sum_of_negatives_is_negative() {
+        let carried = HashMap::default();
+        let mut to = Reordering { graph: Graph::new(), arrivals: HashMap::default(), carried: &carried };
+        let terms: Vec<_> = (0..3).map(|n| (true, to.put(Node::Symbol(Symbol::Local(n))))).collect();
+        let sum = to.sum(terms);
+        let found = evaluate(&to.graph, &[sum], |symbol| match symbol {
+            Symbol::Local(n) => [1.0, 2.0, 4.0][n],
+            other => unreachable!("{other:?}"),
+        });
+        assert_eq!(found, [-7.0]);
+    }
+
     /// Draws of a linear congruence.
     struct Dice(u64);
 
