@@ -15,8 +15,8 @@ const KEPT: [&str; 8] = [
     "gyroscope-stiff",
     "double-wishbone",
     "four-bar",
+    "gyroscope-four-bar",
     "slider-crank",
-    "stewart-platform",
 ];
 
 /// Brings the folder of what is kept up to date with a report; pages that were not written anew stay as they are.
