@@ -67,8 +67,17 @@ impl Constant {
         if other.is_zero() {
             return Some(self.clone());
         }
-        (self.0.radicand == other.0.radicand)
-            .then(|| Self::new(&self.0.coefficient + &other.0.coefficient, self.0.radicand.clone()))
+        if self.0.radicand == other.0.radicand {
+            return Some(Self::new(&self.0.coefficient + &other.0.coefficient, self.0.radicand.clone()));
+        }
+        // A large square may have stayed in a radicand. What the two do not have in common is square then.
+        let common = (&self.0.radicand).gcd(&other.0.radicand);
+        let over_common = |constant: &Self| {
+            let (root, rest) = whole_root(&constant.0.radicand / &common);
+            rest.is_one().then(|| &constant.0.coefficient * root)
+        };
+        let (a, b) = (over_common(self)?, over_common(other)?);
+        Some(Self::new(a + b, common))
     }
 
     pub fn mul(&self, other: &Self) -> Self {
@@ -207,6 +216,11 @@ mod tests {
         // 1000003 is beyond the primes whose squares are looked for.
         let [one, other] = ["2000006", "5000015"].map(root);
         assert_eq!(one.mul(&other), Constant::integer(1_000_003).mul(&root("10")));
+        let square = root("2000012000018");
+        assert_eq!(square.add(&root("2")), Some(Constant::integer(1_000_004).mul(&root("2"))));
+        assert_eq!(square.add(&square.neg()), Some(Constant::integer(0)));
+        assert_eq!(root("2").add(&square.neg()), Some(Constant::integer(-1_000_002).mul(&root("2"))));
+        assert_eq!(square.add(&root("3")), None);
     }
 
     #[test]

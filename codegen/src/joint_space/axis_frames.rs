@@ -159,20 +159,20 @@ impl Placing<'_> {
         let place = graph.add_vec(&on_parent.point, &ahead);
         let place = self.seen(graph, &place);
         let relative = self.relative(graph);
-        let (axes, offset) = match Angles::of(graph, &relative) {
+        let (axes, offsets) = match Angles::of(graph, &relative) {
             Ok(angles) => {
-                let (heading, offset) = self.heading(graph, angles.third);
+                let (heading, offsets) = self.heading(graph, angles.third);
                 moves.extend([about(2, [Graph::ZERO; 2]), about(0, angles.second)]);
                 moves.extend(angles.last_moves(graph, &place));
-                (about_z(graph, &on_body.triad, heading), offset)
+                (about_z(graph, &on_body.triad, heading), offsets)
             }
             Err(rotation) => {
                 let none = [Graph::ZERO; 2];
                 moves.extend([about(2, none), Move::Rotation(rotation), Move::Shift(place)]);
-                (on_body.triad, [Graph::ZERO, Graph::ONE])
+                (on_body.triad, [[Graph::ZERO, Graph::ONE]; 2])
             }
         };
-        let [sine, cosine] = sum_of_angles(graph, turn, offset);
+        let [sine, cosine] = offsets.into_iter().fold(turn, |sum, offset| sum_of_angles(graph, sum, offset));
         moves[1] = Move::Turn { axis: 2, sine, cosine };
         Frame { origin, axes, moves, joint: 1 }
     }
@@ -210,18 +210,21 @@ impl Placing<'_> {
         nearest(graph, (point, &triad[2]), (&next.point, &next.triad[2]))
     }
 
-    /// Sine and cosine of the angle from the joint's zero direction on the body to x, and of the whole angle to add to
-    /// the joint's.
-    fn heading(&self, graph: &mut Graph, third: [ExprId; 2]) -> ([ExprId; 2], [ExprId; 2]) {
+    /// Sine and cosine of the angle from the joint's zero direction on the body to x, and of the angles to add to the
+    /// joint's: two where the sine or cosine of their sum is one of unlike roots.
+    fn heading(&self, graph: &mut Graph, third: [ExprId; 2]) -> ([ExprId; 2], [[ExprId; 2]; 2]) {
         let none = [Graph::ZERO, Graph::ONE];
         if let Some(heading) = self.normal(graph) {
             let offset = sum_of_angles(graph, heading, third);
-            if is_exact(graph, &offset) {
-                return (heading, offset);
-            }
+            let is_whole = is_exact(graph, &offset);
+            return (heading, if is_whole { [offset, none] } else { [third, heading] });
         }
         let is_right = third.contains(&Graph::ZERO);
-        if self.next.is_none() || is_right { ([graph.neg(third[0]), third[1]], none) } else { (none, third) }
+        if self.next.is_none() || is_right {
+            ([graph.neg(third[0]), third[1]], [none; 2])
+        } else {
+            (none, [third, none])
+        }
     }
 
     /// Sine and cosine of the angle from the joint's zero direction to the common normal with the next axis.

@@ -199,6 +199,7 @@ mod tests {
     use super::*;
     use crate::derive::Textbook;
     use crate::expr::evaluate::{evaluate, sample};
+    use crate::expr::schedule::Operations;
 
     /// Recursions over a dozen bodies, pivots of order one.
     const ROUNDING: f64 = 1e-9;
@@ -238,6 +239,45 @@ mod tests {
             }
         }
         others.iter().filter(|(name, _)| name.contains("joint frames")).count()
+    }
+
+    /// Roots of all these directions, and of the angles between them, are unlike each other.
+    #[test]
+    fn frames_along_rough_directions_are_as_short_as_others() {
+        let operations = |axes: [[&str; 2]; 2]| {
+            let mut page = "format = 1\nname = \"chain\"\n[[body]]\nname = \"b0\"\nfixed = true\n".to_owned();
+            for link in 1..=5 {
+                let ends = [(link - 1, "0.13, 0.21, -0.34"), (link, "-0.18, 0.05, 0.29")];
+                let ends = ends.iter().zip(["first", "second"]).zip(axes).map(|((end, key), [axis, zero])| {
+                    let (body, point) = end;
+                    format!("{key} = {{ body = \"b{body}\", point = [{point}], axis = [{axis}], zero = [{zero}] }}\n")
+                });
+                page += &format!(
+                    "[[body]]\nname = \"b{link}\"\nmass = 1.{link}\ninertia = [0.2, 0.3, 0.4{link}]\n\
+                     [[joint]]\nname = \"j{link}\"\nkind = \"revolute\"\n{}",
+                    ends.collect::<String>()
+                );
+            }
+            let model =
+                gyro_model::read("page.toml", &page).unwrap_or_else(|error| panic!("{error}\n{page}"));
+            let mut system = System::new(&model);
+            let textbook = Textbook::derive(&mut system);
+            let coordinates = Coordinates::derive(&mut system, &textbook);
+            let forms = Candidates::solve(&mut system, &coordinates)
+                .on_rates(&mut system, &coordinates.in_joints)
+                .into_iter()
+                .filter(|(name, _)| name.contains("joint frames"));
+            forms.map(|(_, roots)| Operations::count(&system.graph, &roots).total()).collect::<Vec<_>>()
+        };
+        let [fine, rough] =
+            [["1, 2, 2", "2, 1, -2"], ["0.471823, 0.839127, 0.293517", "0.839127, -0.471823, 0"]];
+        let other = ["0.917235, -0.318273, 0.662719", "0.318273, 0.917235, 0"];
+        let expected = operations([fine, ["2, -3, 6", "3, 2, 0"]]);
+        assert_eq!(operations([rough, rough]), operations([fine, fine]));
+        // Roots of the two ends are unlike, and their sums are worked out at run time.
+        for (found, expected) in operations([rough, other]).into_iter().zip(expected) {
+            assert!(4 * found < 5 * expected, "{found} for {expected}");
+        }
     }
 
     #[test]

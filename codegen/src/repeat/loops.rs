@@ -43,15 +43,15 @@ pub struct Loops {
 /// What is put in order: an orbit or a term that belongs to none.
 type Unit = usize;
 
-struct Planning<'t> {
+pub struct Planning<'t> {
     terms: &'t Terms,
-    orbits: &'t Orbits,
+    pub orbits: &'t Orbits,
     edges: Vec<Vec<(Orbit, i64)>>,
-    times: Vec<i64>,
+    pub times: Vec<i64>,
     /// Which orbits are still to be computed in loops.
     is_looped: Vec<bool>,
     /// The connected part of the graph of orbits that each belongs to.
-    component: Vec<usize>,
+    pub component: Vec<usize>,
     /// First and last time of each component, once they are chosen.
     ranges: Vec<Option<(i64, i64)>>,
 }
@@ -59,19 +59,39 @@ struct Planning<'t> {
 impl Loops {
     /// `None` if there are none.
     pub fn plan(terms: &Terms, orbits: &Orbits) -> Option<Self> {
-        let n = orbits.members.len();
-        let edges = (0..n).map(|orbit| orbits.main_edges(orbit)).collect();
-        let (times, is_looped, component) = (vec![0; n], vec![true; n], vec![0; n]);
-        let mut planning = Planning { terms, orbits, edges, times, is_looped, component, ranges: Vec::new() };
-        planning.align();
-        planning.levels()?;
+        let mut planning = Planning::aligned(terms, orbits);
+        planning.levels().ok()?;
         planning.trim();
-        let all = planning.levels()?;
+        let all = loop {
+            match planning.levels() {
+                Ok(all) => break all,
+                Err(component) => planning.leave(component)?,
+            }
+        };
         planning.checked(all)
     }
 }
 
-impl Planning<'_> {
+impl<'t> Planning<'t> {
+    /// Orbits that are connected, at the times that fit best.
+    pub fn aligned(terms: &'t Terms, orbits: &'t Orbits) -> Self {
+        let n = orbits.members.len();
+        let edges = (0..n).map(|orbit| orbits.main_edges(orbit)).collect();
+        let (times, is_looped, component) = (vec![0; n], vec![true; n], vec![0; n]);
+        let mut planning = Self { terms, orbits, edges, times, is_looped, component, ranges: Vec::new() };
+        planning.align();
+        planning
+    }
+
+    /// Leaves what is connected out of loops, if any of it was to be in one.
+    fn leave(&mut self, component: usize) -> Option<()> {
+        let mut was_looped = false;
+        for (is_looped, of) in self.is_looped.iter_mut().zip(&self.component) {
+            was_looped |= *of == component && std::mem::take(is_looped);
+        }
+        was_looped.then_some(())
+    }
+
     /// Gives the orbits of a component times such that most operands are of the same time as their users.
     fn align(&mut self) {
         let n = self.orbits.members.len();
@@ -201,8 +221,9 @@ impl Planning<'_> {
         self.looped(term).unwrap_or(self.times.len() + term)
     }
 
-    /// Puts orbits into loops: each as early as what it needs allows. Before ranges are chosen, only orbits count.
-    fn levels(&mut self) -> Option<Vec<Loop>> {
+    /// Puts orbits into loops: each as early as what it needs allows. Before ranges are chosen, only orbits count. An
+    /// error names a component that cannot be in loops, as what is left out of them lies between its parts.
+    fn levels(&mut self) -> Result<Vec<Loop>, usize> {
         let operands = self.operands_of_units();
         let n_orbits = self.times.len();
         let mut level = vec![0_usize; operands.len()];
@@ -211,14 +232,15 @@ impl Planning<'_> {
             let is_cycle = group.len() > 1 || operands[group[0]].contains(&group[0]);
             if group[0] >= n_orbits || group.len() > 1 && group.iter().any(|&unit| unit >= n_orbits) {
                 if is_cycle {
-                    return None;
+                    let orbit = group.iter().find(|&&unit| unit < n_orbits);
+                    return Err(self.component[*orbit.expect("terms by themselves are in order")]);
                 }
                 let after = |&operand: &Unit| level[operand] + usize::from(operand < n_orbits);
                 level[group[0]] = operands[group[0]].iter().map(after).max().unwrap_or(0);
                 continue;
             }
             let component = self.component[group[0]];
-            let direction = if is_cycle { Some(self.direction(&group)?) } else { None };
+            let direction = if is_cycle { Some(self.direction(&group).ok_or(component)?) } else { None };
             let is_function = |orbit: Orbit| self.terms.all[self.orbits.members[orbit][0]].kind.is_function();
             // Functions have a loop of their own: around a call nothing stays in a processor's registers.
             let is_elsewhere = |orbit: Orbit| {
@@ -240,12 +262,8 @@ impl Planning<'_> {
         }
         let mut drafts: Vec<_> = loops.into_iter().collect();
         drafts.sort_by_key(|&((component, level), _)| (level, component));
-        Some(
-            drafts
-                .into_iter()
-                .filter_map(|((component, _), draft)| self.finished(component, draft))
-                .collect(),
-        )
+        let finished = |((component, _), draft)| self.finished(component, draft);
+        Ok(drafts.into_iter().filter_map(finished).collect())
     }
 
     fn operands_of_units(&self) -> Vec<Vec<Unit>> {

@@ -3,8 +3,9 @@
 //!
 //! Terms are coloured by what is around them (`colours`); variables of one colour, in their order, say which term of
 //! the next part corresponds to a term of this one (`shift`), and terms that correspond are an orbit (`orbits`). Orbits
-//! are put into loops (`loops`), numbers go from one to the next in the columns of arrays (`columns`), and where
-//! signs differ from part to part the opposite is computed (`signs`). `rolled` puts all of it together.
+//! are cut where a part is interrupted (`segments`) and put into loops (`loops`), numbers go from one to the next in the
+//! columns of arrays (`columns`), and where signs differ from part to part the opposite is computed (`signs`). `rolled`
+//! puts all of it together.
 
 mod colours;
 mod columns;
@@ -13,6 +14,7 @@ mod loops;
 mod orbits;
 mod recurrence;
 mod rolled;
+mod segments;
 mod shift;
 mod signs;
 mod terms;
@@ -115,11 +117,20 @@ fn in_one_way(
         Node::Symbol(symbol) => element(*symbol),
         _ => None,
     };
-    let orbits = &Orbits::of(terms, shift, LEAST_PARTS);
-    let loops = &Loops::plan(terms, orbits)?;
-    let columns = &Columns::of(terms, orbits, loops, &element)?;
-    let signs = &Signs::solve(terms, orbits, loops, columns)?;
-    Some(Rolling { source: graph, terms, orbits, loops, columns, signs }.rolled())
+    let rolled = |orbits: &Orbits| {
+        let loops = &Loops::plan(terms, orbits)?;
+        let columns = &Columns::of(terms, orbits, loops, &element)?;
+        let signs = &Signs::solve(terms, orbits, loops, columns)?;
+        Some(Rolling { source: graph, terms, orbits, loops, columns, signs }.rolled())
+    };
+    let orbits = Orbits::of(terms, shift, LEAST_PARTS);
+    let whole = rolled(&orbits);
+    let n_operations = terms.all.iter().filter(|term| term.kind.is_operation()).count();
+    if whole.as_ref().is_some_and(|rolled| SHORT * rolled.length() < n_operations) {
+        return whole;
+    }
+    let cut = segments::cut(terms, &orbits, LEAST_PARTS).and_then(|pieces| rolled(&pieces));
+    whole.into_iter().chain(cut).min_by_key(Rolled::length)
 }
 
 #[cfg(test)]

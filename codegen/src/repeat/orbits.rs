@@ -15,6 +15,8 @@ pub struct Orbits {
     pub of_term: Vec<Option<(Orbit, usize)>>,
     /// The operands of each term, in the order in which they correspond to those of the other members.
     pub operands: Vec<Vec<Operand>>,
+    /// Orbits of different groups are not computed in one loop.
+    pub groups: Vec<usize>,
 }
 
 impl Orbits {
@@ -22,7 +24,8 @@ impl Orbits {
     pub fn of(terms: &Terms, shift: &Shift, n_least: usize) -> Self {
         let n = terms.all.len();
         let operands = terms.all.iter().map(|term| term.operands.clone()).collect();
-        let mut orbits = Self { members: Vec::new(), of_term: vec![None; n], operands };
+        let (of_term, groups) = (vec![None; n], Vec::new());
+        let mut orbits = Self { members: Vec::new(), of_term, operands, groups };
         for first in 0..n {
             if shift.previous[first].is_some() || !terms.all[first].kind.is_operation() {
                 continue;
@@ -36,6 +39,7 @@ impl Orbits {
             members.iter().enumerate().for_each(|(k, &place)| orbits.of_term[place] = Some((orbit, k)));
             orbits.align(terms, shift, &members);
             orbits.members.push(members);
+            orbits.groups.push(0);
         }
         orbits
     }
@@ -63,13 +67,15 @@ impl Orbits {
         }
     }
 
-    /// Each orbit that operands of an orbit belong to, and how many members later the user comes: what holds for most
-    /// members.
+    /// Each orbit of its group that operands of an orbit belong to, and how many members later the user comes: what
+    /// holds for most members.
     pub fn main_edges(&self, orbit: Orbit) -> Vec<(Orbit, i64)> {
         let mut counts: BTreeMap<(Orbit, i64), usize> = BTreeMap::new();
         for (k, &member) in self.members[orbit].iter().enumerate() {
             for operand in &self.operands[member] {
-                if let Some((of, place)) = self.of_term[operand.term] {
+                if let Some((of, place)) = self.of_term[operand.term]
+                    && self.groups[of] == self.groups[orbit]
+                {
                     *counts.entry((of, signed(k) - signed(place))).or_default() += 1;
                 }
             }

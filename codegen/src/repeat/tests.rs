@@ -194,6 +194,19 @@ fn limbs_that_are_alike_are_loops() {
     assert!(sizes.iter().all(|(straight, written)| 2 * written < *straight), "{sizes:?}");
 }
 
+/// One link carries the next one at its centre of mass.
+#[test]
+fn links_on_both_sides_of_another_are_loops() {
+    let page = page(24, false, None).replacen(
+        "body = \"b11\", point = [0.1, 0.10, -0.2]",
+        "body = \"b11\", point = [0, 0, 0]",
+        1,
+    );
+    assert!(page.contains("[0, 0, 0]"), "{page}");
+    let sizes = check(&page, &[Kernel::Accelerations, Kernel::SolveVelocities, Kernel::ToMaximal]);
+    assert!(sizes.iter().all(|(straight, written)| 5 * written < 2 * straight), "{sizes:?}");
+}
+
 const PARTS: usize = 8;
 
 /// Lengths of the orbits of parts that compute these of x and y.
