@@ -43,6 +43,7 @@ pub struct Loops {
 /// What is put in order: an orbit or a term that belongs to none.
 type Unit = usize;
 
+/// Orbits on their way into loops.
 pub struct Planning<'t> {
     terms: &'t Terms,
     pub orbits: &'t Orbits,

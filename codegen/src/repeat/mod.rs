@@ -3,9 +3,9 @@
 //!
 //! Terms are coloured by what is around them (`colours`); variables of one colour, in their order, say which term of
 //! the next part corresponds to a term of this one (`shift`), and terms that correspond are an orbit (`orbits`). Orbits
-//! are cut where a part is interrupted (`segments`) and put into loops (`loops`), numbers go from one to the next in the
-//! columns of arrays (`columns`), and where signs differ from part to part the opposite is computed (`signs`). `rolled`
-//! puts all of it together.
+//! are cut where a part is interrupted (`segments`) and put into loops (`loops`), numbers go from one to the next in
+//! the columns of arrays (`columns`), and where signs differ from part to part the opposite is computed (`signs`).
+//! `rolled` puts all of it together.
 
 mod colours;
 mod columns;

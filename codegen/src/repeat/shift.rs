@@ -26,12 +26,44 @@ pub struct Shift {
 /// So many operations for each one that is computed twice: the verifier allows twice as many.
 pub const OPERATIONS_A_COPY: usize = 100;
 
+/// A set of terms, of which the next one in order is found quickly.
+#[derive(Clone)]
+struct Open(Vec<u64>);
+
+impl Open {
+    fn all(n: usize) -> Self {
+        let mut all = Self(Vec::new());
+        (0..n).for_each(|place| all.insert(place));
+        all
+    }
+
+    fn insert(&mut self, place: Place) {
+        let word = place / 64;
+        if word >= self.0.len() {
+            self.0.resize(word + 1, 0);
+        }
+        self.0[word] |= 1 << (place % 64);
+    }
+
+    fn remove(&mut self, place: Place) {
+        self.0[place / 64] &= !(1 << (place % 64));
+    }
+
+    /// The first of them that is not before a place.
+    fn next(&self, place: Place) -> Option<Place> {
+        let first = self.0.get(place / 64)? & (u64::MAX << (place % 64));
+        let rest = self.0.iter().copied().enumerate().skip(place / 64 + 1);
+        let (word, bits) = [(place / 64, first)].into_iter().chain(rest).find(|&(_, bits)| bits != 0)?;
+        Some(64 * word + bits.trailing_zeros() as usize)
+    }
+}
+
 struct Search {
     terms: Terms,
     colours: Vec<u64>,
     shift: Shift,
     /// Terms around which something has changed since they were looked at.
-    is_open: Vec<bool>,
+    open: Open,
     /// Of which term each is a copy: most of themselves.
     originals: Vec<Place>,
     most_terms: usize,
@@ -47,7 +79,7 @@ impl Shift {
             terms: terms.clone(),
             colours: colours(terms, n_steps),
             shift: Self { next: vec![None; n], previous: vec![None; n] },
-            is_open: vec![true; n],
+            open: Open::all(n),
             originals: (0..n).collect(),
             most_terms: n + n / OPERATIONS_A_COPY,
         };
@@ -63,7 +95,7 @@ impl Shift {
             class.windows(stride + 1).for_each(|members| search.pair(members[0].1, members[stride].1));
         }
         for by_colour in [true, false] {
-            search.is_open.fill(true);
+            search.open = Open::all(n);
             search.spread(by_colour);
         }
         search.choose_users();
@@ -88,28 +120,27 @@ impl Search {
     /// What looks at a new pair is to look again: the pair, what shares a user with its first term, and terms whose
     /// operands or users, or those of the terms that correspond to them, are in the pair.
     fn open_around(&mut self, one: Place, other: Place) {
-        let Self { terms, shift, is_open, .. } = self;
+        let Self { terms, shift, open, .. } = self;
         let operands = |place: Place| terms.all[place].operands.iter().map(|operand| operand.term);
-        is_open[one] = true;
+        open.insert(one);
         for user in terms.all[one].users.iter().copied() {
-            is_open[user] = true;
-            operands(user).for_each(|beside| is_open[beside] = true);
+            open.insert(user);
+            operands(user).for_each(|beside| open.insert(beside));
         }
-        operands(one).for_each(|operand| is_open[operand] = true);
+        operands(one).for_each(|operand| open.insert(operand));
         let beside_other = terms.all[other].users.iter().copied().chain(operands(other));
-        beside_other.filter_map(|place| shift.previous[place]).for_each(|place| is_open[place] = true);
+        beside_other.filter_map(|place| shift.previous[place]).for_each(|place| open.insert(place));
     }
 
     fn spread(&mut self, by_colour: bool) {
-        while self.is_open.contains(&true) {
-            let mut at = 0;
-            while let Some(further) = self.is_open[at..].iter().position(|&is_open| is_open) {
-                at += further;
-                self.is_open[at] = false;
-                if let Some(other) = self.shift.next[at] {
-                    self.operands(at, other, by_colour);
-                    self.users(at, other, by_colour);
-                }
+        // In the order of their places, again and again.
+        let mut at = 0;
+        while let Some(place) = self.open.next(at).or_else(|| self.open.next(0)) {
+            at = place;
+            self.open.remove(place);
+            if let Some(other) = self.shift.next[place] {
+                self.operands(place, other, by_colour);
+                self.users(place, other, by_colour);
             }
         }
     }
@@ -117,9 +148,9 @@ impl Search {
     /// A pair that was chosen, and what follows from it.
     fn choose(&mut self, one: Place, other: Place) {
         self.pair(one, other);
-        let open = self.is_open.clone();
+        let open = self.open.clone();
         self.spread(true);
-        self.is_open = open;
+        self.open = open;
         self.spread(false);
     }
 
@@ -227,7 +258,7 @@ impl Search {
         self.originals.push(self.originals[term]);
         self.shift.next.push(None);
         self.shift.previous.push(None);
-        self.is_open.push(true);
+        self.open.insert(copy);
         Some(copy)
     }
 
