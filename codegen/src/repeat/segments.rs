@@ -155,7 +155,7 @@ mod tests {
         let mut runs = vec![(0, 19); 9];
         runs.extend([(0, 7), (8, 19)]);
         assert_eq!(best_segments(&runs, 4), [(0, 7), (8, 19)]);
-        assert_eq!(best_segments(&vec![(3, 19); 10], 4), [(3, 19)]);
+        assert_eq!(best_segments(&[(3, 19); 10], 4), [(3, 19)]);
         // What is interrupted near an end is not worth two loops.
         runs.truncate(9);
         runs.extend([(0, 0), (1, 19)]);
