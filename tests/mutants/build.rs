@@ -49,7 +49,7 @@ fn copy_folder(from: &Path, to: &Path) -> std::io::Result<()> {
         } else {
             // The generator's own tests stay behind.
             let text = fs::read_to_string(entry.path())?;
-            fs::write(target, text.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or(&text))?;
+            fs::write(target, text.split("\n#[cfg(test)]\nmod tests").next().unwrap_or(&text))?;
         }
     }
     Ok(())
