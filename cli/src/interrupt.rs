@@ -41,7 +41,7 @@ pub(crate) fn was_interrupted() -> bool {
     WAS_INTERRUPTED.load(Ordering::SeqCst)
 }
 
-/// What ends a run in this process at its next event once it was interrupted: after a forecast not before the first
+/// What ends a run at its next event once it was interrupted: after a forecast not before the first
 /// sample, so that there is a part to keep.
 pub(crate) fn interruptible(tell: &mut dyn FnMut(Event<'_>)) -> impl FnMut(Event<'_>) -> io::Result<()> {
     |event| {
@@ -54,9 +54,4 @@ pub(crate) fn interruptible(tell: &mut dyn FnMut(Event<'_>)) -> impl FnMut(Event
 /// How it ends.
 pub(crate) fn failure() -> Failure {
     Failure::Interrupted("interrupted".to_owned())
-}
-
-/// A failure if the run is to end.
-pub(crate) fn check() -> Result<(), Failure> {
-    if was_interrupted() { Err(failure()) } else { Ok(()) }
 }

@@ -401,15 +401,16 @@ impl Drop for Session {
 /// What the replies come to, if they do.
 fn listen(output: &mut impl BufRead, tell: &mut impl FnMut(Event<'_>)) -> Result<Option<Answer>, Failure> {
     let mut timing = None;
+    let mut told = interrupt::interruptible(tell);
+    let mut tell = |event: Event<'_>| told(event).map_err(|_| interrupt::failure());
     while let Some(reply) = protocol::read(output).map_err(|e| Failure::Run(format!("the program: {e}")))? {
-        interrupt::check()?;
         match reply {
-            Reply::Sample(sample) => tell(Event::Sample(&sample)),
-            Reply::Occurred(found) => tell(Event::Occurred(&found)),
-            Reply::Linear(linear) => tell(Event::Linear(&linear)),
-            Reply::Stopped(t, state) => tell(Event::Stopped(t, &state)),
-            Reply::Progress(t) => tell(Event::Progress(t)),
-            Reply::Forecast(forecast) => tell(Event::Forecast(forecast)),
+            Reply::Sample(sample) => tell(Event::Sample(&sample))?,
+            Reply::Occurred(found) => tell(Event::Occurred(&found))?,
+            Reply::Linear(linear) => tell(Event::Linear(&linear))?,
+            Reply::Stopped(t, state) => tell(Event::Stopped(t, &state))?,
+            Reply::Progress(t) => tell(Event::Progress(t))?,
+            Reply::Forecast(forecast) => tell(Event::Forecast(forecast))?,
             Reply::Timed(timed) => timing = Some(timed),
             Reply::Done(summary) => return Ok(Some(Answer::Done(Box::new(summary), timing))),
             Reply::Unexplained(words) => return Ok(Some(Answer::Unexplained(words))),

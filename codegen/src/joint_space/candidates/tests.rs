@@ -4,18 +4,29 @@ use super::*;
 use crate::derive::Textbook;
 use crate::expr::evaluate::{evaluate, sample};
 use crate::expr::schedule::Operations;
+use gyro_model::Model;
 
 /// Recursions over a dozen bodies, pivots of order one.
 const ROUNDING: f64 = 1e-9;
 
-/// All forms in the frames of joints against the recursion in the bodies' frames; how many were compared.
-fn check(page: &str) -> usize {
-    let model = gyro_model::read("page.toml", page).unwrap_or_else(|error| panic!("{error}\n{page}"));
-    let mut system = System::new(&model);
+fn read(page: &str) -> Model {
+    gyro_model::read("page.toml", page).unwrap_or_else(|error| panic!("{error}\n{page}"))
+}
+
+/// All forms of a mechanism's accelerations in terms of joint coordinates.
+fn solved(model: &Model) -> (System<'_>, Coordinates, Vec<(String, Vec<ExprId>)>) {
+    let mut system = System::new(model);
     let textbook = Textbook::derive(&mut system);
     let coordinates = Coordinates::derive(&mut system, &textbook);
     let candidates = Candidates::solve(&mut system, &coordinates);
     let forms = candidates.on_rates(&mut system, &coordinates.in_joints);
+    (system, coordinates, forms)
+}
+
+/// All forms in the frames of joints against the recursion in the bodies' frames; how many were compared.
+fn check(page: &str) -> usize {
+    let model = read(page);
+    let (system, coordinates, forms) = solved(&model);
     let (expected, others) = forms.split_first().expect("there is a recursion");
     for seed in 0..5 {
         let value = |symbol| match symbol {
@@ -64,15 +75,11 @@ fn frames_along_rough_directions_are_as_short_as_others() {
                 ends.collect::<String>()
             );
         }
-        let model = gyro_model::read("page.toml", &page).unwrap_or_else(|error| panic!("{error}\n{page}"));
-        let mut system = System::new(&model);
-        let textbook = Textbook::derive(&mut system);
-        let coordinates = Coordinates::derive(&mut system, &textbook);
-        let forms = Candidates::solve(&mut system, &coordinates)
-            .on_rates(&mut system, &coordinates.in_joints)
-            .into_iter()
-            .filter(|(name, _)| name.contains("joint frames"));
-        forms.map(|(_, roots)| Operations::count(&system.graph, &roots).total()).collect::<Vec<_>>()
+        check(&page);
+        let model = read(&page);
+        let (system, _, forms) = solved(&model);
+        let forms = forms.iter().filter(|(name, _)| name.contains("joint frames"));
+        forms.map(|(_, roots)| Operations::count(&system.graph, roots).total()).collect::<Vec<_>>()
     };
     let [fine, rough] = [["1, 2, 2", "2, 1, -2"], ["0.471823, 0.839127, 0.293517", "0.839127, -0.471823, 0"]];
     let other = ["0.917235, -0.318273, 0.662719", "0.318273, 0.917235, 0"];
@@ -124,19 +131,23 @@ fn couplers_drivers_and_rows_of_loops_are_put_into_the_mass_matrix() {
         (include_str!("../../../../tests/models/driven-stewart.toml"), 1),
     ] {
         assert_eq!(check(page), n_forms, "{page}");
-        let _ = n_forms;
+    }
+}
+
+/// Draws of one in so many.
+fn dice(seed: u64) -> impl FnMut(usize) -> usize {
+    let mut draws = 0..;
+    move |sides| {
+        let draw = draws.next().expect("without end");
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a die")]
+        let face = (f64::midpoint(sample(seed)(Symbol::Coordinate(draw)), 1.0) * sides as f64) as usize;
+        face.min(sides - 1)
     }
 }
 
 /// A tree of five or six bodies, made of dice: axes along coordinates, skewed, parallel and through one point.
 fn tree(seed: u64) -> String {
-    let mut draws = 0..;
-    let mut die = |sides: usize| {
-        let draw = draws.next().expect("without end");
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a die")]
-        let face = (f64::midpoint(sample(seed)(Symbol::Coordinate(draw)), 1.0) * sides as f64) as usize;
-        face.min(sides - 1)
-    };
+    let mut die = dice(seed);
     let axes =
         ["[0, 0, 1]", "[0, 1, 0]", "[1, 0, 0]", "[0, 0, -1]", "[3, 0, 4]", "[1, 2, 2]", "[0.3, -0.1, 0.7]"];
     let points = ["[0, 0, 0]", "[0.3, 0, 0]", "[0, -0.2, 0.1]", "[0, 0, 0.4]", "[0.1, 0.2, -0.3]"];
@@ -208,13 +219,7 @@ fn joints_that_follow_others_are_carried_on_to_where_they_meet() {
 /// A plate on three to six legs, made of dice: on the ground or on a table that moves, on universal and ball
 /// joints, joints named from either end; the plate may carry something. At the start all legs are upright.
 fn platform(seed: u64) -> String {
-    let mut draws = 0..;
-    let mut die = |sides: usize| {
-        let draw = draws.next().expect("without end");
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a die")]
-        let face = (f64::midpoint(sample(seed)(Symbol::Coordinate(draw)), 1.0) * sides as f64) as usize;
-        face.min(sides - 1)
-    };
+    let mut die = dice(seed);
     let n_legs = 3 + die(4);
     let inertia = "inertia = { xx = 0.5, yy = 0.6, zz = 0.7, xy = 0.01, xz = -0.02, yz = 0.03 }";
     let mut text = String::from(
