@@ -69,7 +69,7 @@ pub use simplify::normal_form::Reduction;
 use derive::system::System;
 use derive::{Observed, Textbook};
 use emit::module;
-use equations::{Equations, Parts, Rotations, is_geared};
+use equations::{Equations, Parts, Rotations};
 use groups::Facts;
 use joint_space::{Candidates, Coordinates, JointSpace, obstacle};
 use kernels::Kernels;
@@ -300,7 +300,7 @@ fn facts(system: &System) -> Facts {
     };
     Facts {
         joint_coordinates: obstacle(model).is_none(),
-        joint_partition: !Partition::covers(system) && !is_geared(model),
+        joint_partition: !Partition::covers(system),
         outputs_of_motion: model.outputs.iter().any(tells_motion),
         outputs_of_multipliers: model.outputs.iter().any(tells_multipliers),
         work_of_loops: is_driven && model.has_work() && !system.loop_closure_rows().is_empty(),

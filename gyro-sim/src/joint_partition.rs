@@ -2,13 +2,13 @@
 //! joints.
 //!
 //! Where charts do not reach, a mechanism that has joint coordinates is partitioned in them, by the functions of its
-//! [`JointSpace`]: unrolled, and of the size of what closes its loops rather than of Φ_q. A step reads the coordinates
-//! of the tree off the maximal state, closes loops by the smallest change of these, and places the bodies anew. Nothing
+//! [`JointSpace`]: unrolled, and of the size of what closes its loops rather than of Φ_q. A step takes the coordinates
+//! of the tree from the maximal state, closes loops by the smallest change of these, and places the bodies anew. Nothing
 //! else of the tree's coordinates changes; drivers are satisfied by construction, and so are the rows of all joints of
-//! the tree. As none of a loop's coordinates is preferred, there is no choice that could become a poor one. Mechanisms
-//! with couplers or screws are left to [`pivoting`](crate::pivoting): the choice of the coordinate that is known best
-//! matters to them, and so do whole turns, which are not read here. A generated mechanism calls these functions from
-//! its [`Partition`](crate::Partition), one line each.
+//! the tree. As none of a loop's coordinates is preferred, there is no choice that could become a poor one. Angles of which
+//! the state counts the turns are independent themselves: who sets the pose of such a joint in a state by hand also
+//! sets its turn reference ([`refer_turns`](crate::refer_turns)). A generated mechanism calls these functions from its
+//! [`Partition`](crate::Partition), one line each.
 //!
 //! # Example
 //! ```
@@ -29,7 +29,7 @@
 //! # }
 //! ```
 
-use crate::{Clearance, CloseLoops, Error, JointSpace, Real, Scalar};
+use crate::{Clearance, CloseLoops, Error, JointPlace, JointSpace, Real, Scalar};
 
 /// One Newton step of the positions: closed loops and bodies that their joints hold.
 ///
@@ -48,6 +48,9 @@ pub fn newton_step<M: JointSpace<Scalar: Real>>(
     for (old, new) in old.iter_mut().zip(new).take(mechanism.description().bodies.len()) {
         *old = nearer_sign(old, *new);
     }
+    let first = references(mechanism, y);
+    let turns = y.as_mut().iter_mut().zip(placed.as_ref()).skip(first);
+    turns.for_each(|(old, new)| *old = *new);
     Ok(())
 }
 
@@ -71,13 +74,32 @@ pub fn clearance<M: JointSpace<Scalar: Real>>(
     CloseLoops::new(mechanism).clearance(mechanism, t, &joints(mechanism, t, y))
 }
 
-/// The joint state of a maximal state, angles of one turn, where they have the most digits: that of mechanisms whose
-/// whole turns matter, as those of gears and screws do, is not asked for.
+/// The joint state of a maximal state. Angles that have a turn reference are what that is: it is integrated as they are
+/// in joint coordinates, without the error of phase that a method makes in Euler parameters, and what gears and screws
+/// hand on needs its whole turns. All others are read off the poses, of one turn, where they have the most digits.
 fn joints<M: JointSpace>(mechanism: &M, t: M::Scalar, y: &M::State) -> M::Joints {
     let mut x = mechanism.joint_start();
     x.as_mut().fill(M::Scalar::constant(0.0));
     mechanism.to_joints(t, y, &mut x);
+    let description = mechanism.description();
+    let first = references(mechanism, y);
+    let mut place = 0;
+    for of in mechanism.joint_layout().places {
+        if let JointPlace::Scalar { joint, coordinate } = *of
+            && let Some(reading) = description.reading(joint.into(), coordinate.into())
+            && let Some(turn) = description.turn_references.iter().position(|of| usize::from(*of) == reading)
+            && let (Some(x), Some(reference)) = (x.as_mut().get_mut(place), y.as_ref().get(first + turn))
+        {
+            *x = *reference;
+        }
+        place += of.n_coordinates();
+    }
     x
+}
+
+/// Where the turn references begin in a state.
+fn references<M: JointSpace>(mechanism: &M, y: &M::State) -> usize {
+    y.as_ref().len().saturating_sub(mechanism.description().turn_references.len())
 }
 
 fn placed<M: JointSpace>(mechanism: &M, t: M::Scalar, x: &M::Joints) -> M::State {

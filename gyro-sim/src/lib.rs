@@ -146,7 +146,7 @@ pub use error::Error;
 pub use integrate::{Dop853, Kutta4, Rk4, Rodas4, Tsit5};
 pub use scalar::{Lanes, Real, Scalar};
 pub use solver::{Control, Passage, Solver, Statistics};
-pub use turns::{JointCoordinate, Turns, refer_turns};
+pub use turns::{JointCoordinate, Turns, keep_turns, refer_turns};
 pub use violation::{Violation, violation};
 
 /// Where this crate's manifest was when it was compiled: the command line packs its sources.

@@ -13,6 +13,25 @@ pub fn refer_turns<M: Mechanism>(mechanism: &M, t: M::Scalar, y: &mut M::State) 
     }
 }
 
+/// Sets those turn references that have strayed from their angles by more than a quarter of a turn: for steps between
+/// corrections. The others stay what integration has made of them, which is more accurate than the angles of poses, and
+/// which the partition in joint coordinates goes by ([`joint_partition`](crate::joint_partition)).
+pub fn keep_turns<M: Mechanism<Scalar: Real>>(mechanism: &M, t: M::Scalar, y: &mut M::State) {
+    let n_references = mechanism.description().turn_references.len();
+    if n_references == 0 {
+        return;
+    }
+    let before = y.clone();
+    refer_turns(mechanism, t, y);
+    let quarter = M::Scalar::constant(core::f64::consts::FRAC_PI_2);
+    let pairs = y.as_mut().iter_mut().rev().zip(before.as_ref().iter().rev()).take(n_references);
+    for (angle, reference) in pairs {
+        if (*angle - *reference).abs() < quarter {
+            *angle = *reference;
+        }
+    }
+}
+
 /// One coordinate of a joint and its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(SerBin, DeBin))]
@@ -82,11 +101,9 @@ impl<M: Mechanism<Scalar: Real>> Turns<M> {
         joint: usize,
         index: usize,
     ) -> Option<JointCoordinate<M::Scalar>> {
-        let joints = mechanism.description().joints;
-        let coordinates = joints.get(joint)?.coordinates;
-        let before: usize = joints.iter().take(joint).map(|joint| joint.n_readings()).sum();
-        let kind = coordinates.get(index)?;
-        let at = before + coordinates[..index].iter().map(|c| c.n_readings()).sum::<usize>();
+        let description = mechanism.description();
+        let at = description.reading(joint, index)?;
+        let kind = description.joints.get(joint)?.coordinates.get(index)?;
         Some(match kind {
             Coordinate::Angle => {
                 let last = self.last.as_ref();

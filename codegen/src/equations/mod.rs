@@ -17,7 +17,7 @@ use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::normal_form::vanishes;
 use crate::solve::Solution;
 use crate::solve::partition::Partition;
-use gyro_model::{JointKind, Model, Spline};
+use gyro_model::{Model, Spline};
 
 /// Non-zeros with their places.
 #[derive(Debug)]
@@ -104,12 +104,6 @@ pub enum PartitionForm {
     Pivoting,
 }
 
-/// Whether parts of it are geared. Where they are is known best from the slowest of them, or from a displacement: a
-/// method integrates these with the least error of phase, and only pivoting looks for them.
-pub fn is_geared(model: &Model) -> bool {
-    !model.couplers.is_empty() || model.joints.iter().any(|joint| joint.kind == JointKind::Screw)
-}
-
 /// The partition by charts.
 #[derive(Debug)]
 pub struct Charts {
@@ -135,7 +129,7 @@ impl<'m> Equations<'m> {
     pub fn partition_form(&self) -> PartitionForm {
         if self.charts.is_some() {
             PartitionForm::Charts
-        } else if self.joint_space.is_some() && !is_geared(self.model) {
+        } else if self.joint_space.is_some() {
             PartitionForm::Joints
         } else {
             PartitionForm::Pivoting

@@ -37,6 +37,15 @@ impl Description<'_> {
         self.rows.get(row).is_some_and(|row| row.is_length)
     }
 
+    /// Where among the readings those of a joint's coordinate begin; `None` for one that does not exist.
+    pub fn reading(&self, joint: usize, coordinate: usize) -> Option<usize> {
+        let (before, from) = self.joints.split_at_checked(joint)?;
+        let own = from.first()?.coordinates;
+        own.get(coordinate)?;
+        let of_joints: usize = before.iter().map(JointInfo::n_readings).sum();
+        Some(of_joints + own.iter().take(coordinate).map(|c| c.n_readings()).sum::<usize>())
+    }
+
     /// The index of the work in the state, if it is there.
     pub fn work(&self) -> Option<usize> {
         self.has_work.then_some(13 * self.bodies.len())

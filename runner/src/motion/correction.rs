@@ -54,7 +54,7 @@ where
         self.0.correct(mechanism, t, y)
     }
     fn refer_turns(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) {
-        gyro_sim::refer_turns(mechanism, t, y);
+        gyro_sim::keep_turns(mechanism, t, y);
     }
     fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> M::Scalar {
         self.0.violation(mechanism, t, y)
