@@ -9,12 +9,20 @@ use crate::expr::symbol::Symbol;
 use gyro_model::Rational;
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
-use rustc_hash::{FxBuildHasher, FxHashSet as HashSet};
+use rustc_hash::FxBuildHasher;
+use std::cell::RefCell;
 use std::hash::BuildHasher;
 
 /// Handle of an expression in its [`Graph`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ExprId(u32);
+
+impl ExprId {
+    /// Its place among all expressions of the graph.
+    pub fn place(self) -> usize {
+        self.0 as usize
+    }
+}
 
 /// One expression.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -70,10 +78,12 @@ impl Node {
 #[derive(Debug)]
 pub struct Graph {
     nodes: Vec<Node>,
-    /// By their hashes.
-    index: HashTable<ExprId>,
+    /// By their hashes, which stand beside them: to move an entry, or to tell most that differ, takes no node.
+    index: HashTable<(u32, ExprId)>,
     /// Of each node, what it changes with.
     changes: Vec<Changes>,
+    /// A bit for each node, all of them zero but while a walk is under way.
+    seen: RefCell<Vec<u64>>,
 }
 
 /// What an expression changes with: the last of what its symbols are.
@@ -89,14 +99,15 @@ impl Graph {
     pub const ONE: ExprId = ExprId(1);
 
     pub fn new() -> Self {
-        let mut graph = Self { nodes: Vec::new(), index: HashTable::new(), changes: Vec::new() };
+        let (nodes, index, changes) = (Vec::new(), HashTable::new(), Vec::new());
+        let mut graph = Self { nodes, index, changes, seen: RefCell::default() };
         graph.integer(0);
         graph.integer(1);
         graph
     }
 
     pub fn node(&self, id: ExprId) -> &Node {
-        &self.nodes[id.0 as usize]
+        &self.nodes[id.place()]
     }
 
     /// The exact value of a constant expression.
@@ -107,12 +118,12 @@ impl Graph {
     /// Whether an expression depends on parameters and nothing else: it is computed once, before all steps (see
     /// `parameter_setup`).
     pub fn is_settled(&self, id: ExprId) -> bool {
-        self.changes[id.0 as usize] == Changes::WithParameters
+        self.changes[id.place()] == Changes::WithParameters
     }
 
     /// Whether it changes from step to step.
     pub fn is_changing(&self, id: ExprId) -> bool {
-        self.changes[id.0 as usize] == Changes::WithState
+        self.changes[id.place()] == Changes::WithState
     }
 
     /// Every node that the roots depend on, operands before their users, in the order in which a depth-first walk from
@@ -123,18 +134,24 @@ impl Graph {
 
     /// The same, but for what is known and what only that depends on.
     pub fn reachable_beyond(&self, roots: &[ExprId], is_known: impl Fn(ExprId) -> bool) -> Vec<ExprId> {
-        let mut seen = HashSet::default();
+        let is_seen = |seen: &[u64], id: ExprId| seen[id.place() / 64] & (1 << (id.place() % 64)) != 0;
+        let mut seen = self.seen.take();
+        seen.resize(self.nodes.len().div_ceil(64), 0);
         let mut order = Vec::new();
         // A node is pushed a second time, as complete, beneath its operands.
         let mut stack: Vec<_> = roots.iter().rev().map(|&root| (root, false)).collect();
         while let Some((id, complete)) = stack.pop() {
             if complete {
                 order.push(id);
-            } else if !is_known(id) && seen.insert(id) {
+            } else if !is_seen(&seen, id) && !is_known(id) {
+                seen[id.place() / 64] |= 1 << (id.place() % 64);
                 stack.push((id, true));
-                stack.extend(self.node(id).operands().map(|operand| (operand, false)));
+                let operands = self.node(id).operands().filter(|&operand| !is_seen(&seen, operand));
+                stack.extend(operands.map(|operand| (operand, false)));
             }
         }
+        order.iter().for_each(|id| seen[id.place() / 64] = 0);
+        self.seen.replace(seen);
         order
     }
 
@@ -374,22 +391,24 @@ impl Graph {
 
     /// An expression as it is, without any simplification.
     pub fn intern(&mut self, node: Node) -> ExprId {
-        let Self { nodes, index, changes } = self;
-        let hash = |node: &Node| FxBuildHasher.hash_one(node);
-        let same = |id: &ExprId| nodes[id.0 as usize] == node;
-        let vacant = match index.entry(hash(&node), same, |id| hash(&nodes[id.0 as usize])) {
-            Entry::Occupied(known) => return *known.get(),
+        let Self { nodes, index, changes, .. } = self;
+        let hash = FxBuildHasher.hash_one(&node) as u32;
+        let same = |&(other, id): &(u32, ExprId)| other == hash && nodes[id.place()] == node;
+        // The table takes the last bits for the place, and the first to tell entries of one place apart.
+        let spread = |hash: u32| u64::from(hash).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let vacant = match index.entry(spread(hash), same, |&(hash, _)| spread(hash)) {
+            Entry::Occupied(known) => return known.get().1,
             Entry::Vacant(vacant) => vacant,
         };
         let id = ExprId(
             u32::try_from(nodes.len()).expect("four thousand million expressions do not fit in memory"),
         );
-        vacant.insert(id);
+        vacant.insert((hash, id));
         changes.push(match &node {
             Node::Symbol(Symbol::Parameter(_)) => Changes::WithParameters,
             Node::Symbol(_) => Changes::WithState,
             operation => {
-                let operands = operation.operands().map(|operand| changes[operand.0 as usize]);
+                let operands = operation.operands().map(|operand| changes[operand.place()]);
                 operands.max().unwrap_or(Changes::Never)
             }
         });

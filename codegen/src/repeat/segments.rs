@@ -3,7 +3,6 @@
 
 use super::loops::Planning;
 use super::orbits::{Orbit, Orbits, signed};
-use super::terms::Terms;
 
 /// More times than this are not cut: the work grows with their square.
 const MOST_TIMES: usize = 2000;
@@ -12,18 +11,18 @@ const MOST_TIMES: usize = 2000;
 type Span = (i64, i64);
 
 /// The orbits, cut where their parts are interrupted; `None` if there is nothing to be cut.
-pub fn cut(terms: &Terms, orbits: &Orbits, n_least: usize) -> Option<Orbits> {
-    let planning = Planning::aligned(terms, orbits);
+pub fn cut(planning: &Planning, n_least: usize) -> Option<Orbits> {
+    let orbits = planning.orbits;
     let n_components = planning.component.iter().max().map_or(0, |last| last + 1);
     let mut runs: Vec<Vec<Span>> = vec![Vec::new(); n_components];
     for orbit in 0..orbits.members.len() {
-        runs[planning.component[orbit]].extend(even_runs(&planning, orbit));
+        runs[planning.component[orbit]].extend(even_runs(planning, orbit));
     }
     let segments: Vec<Vec<Span>> = runs.iter().map(|runs| best_segments(runs, signed(n_least))).collect();
     if segments.iter().all(|segments| segments.len() < 2) {
         return None;
     }
-    let n = terms.all.len();
+    let n = planning.terms.all.len();
     let (of_term, operands) = (vec![None; n], orbits.operands.clone());
     let mut pieces = Orbits { members: Vec::new(), of_term, operands, groups: Vec::new() };
     for (orbit, members) in orbits.members.iter().enumerate() {
