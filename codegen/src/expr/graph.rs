@@ -392,10 +392,9 @@ impl Graph {
     /// An expression as it is, without any simplification.
     pub fn intern(&mut self, node: Node) -> ExprId {
         let Self { nodes, index, changes, .. } = self;
-        let hash = FxBuildHasher.hash_one(&node) as u32;
+        let hash = hash(&node);
         let same = |&(other, id): &(u32, ExprId)| other == hash && nodes[id.place()] == node;
-        // The table takes the last bits for the place, and the first to tell entries of one place apart.
-        let spread = |hash: u32| u64::from(hash).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let spread = |hash: u32| u64::from(hash) | u64::from(hash) << 32;
         let vacant = match index.entry(spread(hash), same, |&(hash, _)| spread(hash)) {
             Entry::Occupied(known) => return known.get().1,
             Entry::Vacant(vacant) => vacant,
@@ -415,6 +414,14 @@ impl Graph {
         nodes.push(node);
         id
     }
+}
+
+/// The table of nodes takes the last bits for the place and the first seven to tell entries of one place apart. Places
+/// go by the last operand: what is made of neighbours is looked up among neighbours, wherever in memory that is.
+fn hash(node: &Node) -> u32 {
+    let mixed = FxBuildHasher.hash_one(node) as u32;
+    let near = node.operands().max().map_or(mixed >> 11, |last| last.0);
+    mixed << 25 | ((near << 4 | (mixed >> 7 & 15)) & ((1 << 25) - 1))
 }
 
 #[cfg(test)]

@@ -126,16 +126,16 @@ impl<'t> Planning<'t> {
             }
             n_components += 1;
         }
+        let mut votes: Vec<i64> = Vec::new();
         for _ in 0..SWEEPS {
             for (orbit, beside) in beside.iter().enumerate() {
-                let mut votes: BTreeMap<i64, usize> = BTreeMap::new();
-                for &(other, offset) in beside {
-                    *votes.entry(self.times[other] + offset).or_default() += 1;
-                }
+                votes.clear();
+                votes.extend(beside.iter().map(|&(other, offset)| self.times[other] + offset));
+                votes.sort_unstable();
                 let own = self.times[orbit];
-                let most = votes.iter().max_by_key(|&(&time, &count)| (count, time == own));
-                if let Some((&time, _)) = most {
-                    self.times[orbit] = time;
+                let alike = votes.chunk_by(|a, b| a == b);
+                if let Some(most) = alike.max_by_key(|alike| (alike.len(), alike[0] == own)) {
+                    self.times[orbit] = most[0];
                 }
             }
         }

@@ -47,15 +47,13 @@ pub fn cut(planning: &Planning, n_least: usize) -> Option<Orbits> {
 /// The longest spans in which each operand of an orbit comes from one orbit, so many parts before.
 fn even_runs(planning: &Planning, orbit: Orbit) -> Vec<Span> {
     let Planning { orbits, times, component, .. } = planning;
-    let source = |k: usize| -> Vec<Option<(Orbit, i64)>> {
+    let source = |k: usize| -> [Option<(Orbit, i64)>; 2] {
         let time = times[orbit] + signed(k);
-        let operands = orbits.operands[orbits.members[orbit][k]].iter();
-        operands
-            .map(|operand| {
-                let (of, place) = orbits.of_term[operand.term]?;
-                (component[of] == component[orbit]).then_some((of, time - times[of] - signed(place)))
-            })
-            .collect()
+        let operands = orbits.operands[orbits.members[orbit][k]];
+        [0, 1].map(|slot| {
+            let (of, place) = orbits.of_term[operands.get(slot)?.term]?;
+            (component[of] == component[orbit]).then_some((of, time - times[of] - signed(place)))
+        })
     };
     let sources: Vec<_> = (0..orbits.members[orbit].len()).map(source).collect();
     let mut first = times[orbit];

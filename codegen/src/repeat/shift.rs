@@ -90,6 +90,8 @@ struct Search<'t> {
     /// Of which term each is a copy: most of themselves.
     originals: Vec<Place>,
     most_terms: usize,
+    /// Room for users of a term and of its counterpart.
+    only_ones: [Vec<((Kind, u64), Place)>; 2],
 }
 
 impl Shift {
@@ -105,6 +107,7 @@ impl Shift {
             open: Open::all(n),
             originals: (0..n).collect(),
             most_terms: n + n / OPERATIONS_A_COPY,
+            only_ones: [Vec::new(), Vec::new()],
         };
         let mut classes: BTreeMap<(Kind, u64), Vec<(usize, Place)>> = BTreeMap::new();
         for (place, term) in terms.all.iter().enumerate() {
@@ -394,16 +397,17 @@ impl<'t> Search<'t> {
             }
         }
         // What is the only one of its kind.
-        let ours = self.only_ones(one, by_colour, &self.shift.next);
-        if ours.is_empty() {
-            return;
+        let [mut ours, mut theirs] = std::mem::take(&mut self.only_ones);
+        self.only_ones(one, by_colour, &self.shift.next, &mut ours);
+        if !ours.is_empty() {
+            self.only_ones(other, by_colour, &self.shift.previous, &mut theirs);
         }
-        let theirs = self.only_ones(other, by_colour, &self.shift.previous);
-        for (key, a) in ours {
+        for &(key, a) in &ours {
             if let Ok(at) = theirs.binary_search_by_key(&key, |&(key, _)| key) {
                 self.pair(a, theirs[at].1);
             }
         }
+        self.only_ones = [ours, theirs];
     }
 
     /// The users of a term without a counterpart that are the only ones of their kind and colour, in the order of
@@ -413,16 +417,26 @@ impl<'t> Search<'t> {
         place: Place,
         by_colour: bool,
         counterparts: &[Option<Place>],
-    ) -> Vec<((Kind, u64), Place)> {
+        found: &mut Vec<((Kind, u64), Place)>,
+    ) {
         let is_open = |user: &&Place| counterparts[**user].is_none();
         let open = self.terms.all[place].users.iter().filter(is_open).map(|&user| {
             let colour = if by_colour { self.colours[user] } else { 0 };
             ((self.terms.all[user].kind, colour), user)
         });
-        let mut sorted: Vec<_> = open.collect();
-        sorted.sort_unstable();
-        let groups = sorted.chunk_by(|(one, _), (other, _)| one == other);
-        groups.filter(|group| group.len() == 1).map(|group| group[0]).collect()
+        found.clear();
+        found.extend(open);
+        found.sort_unstable();
+        let mut n = 0;
+        for at in 0..found.len() {
+            let key = found[at].0;
+            let is_first = at == 0 || found[at - 1].0 != key;
+            if is_first && found.get(at + 1).is_none_or(|next| next.0 != key) {
+                found[n] = found[at];
+                n += 1;
+            }
+        }
+        found.truncate(n);
     }
 
     /// The other operand of a term.

@@ -61,12 +61,12 @@ impl Signs {
                             Source::Element { .. } | Source::Same(_) => (Vec::new(), false),
                         };
                         form.1 ^= operand.is_negative;
-                        given.push(equations.reduced(&form));
+                        given.push(equations.reduced(form));
                     }
                     // What the first part has, all have: an orbit and its opposite serve equally well.
                     let mut operand = |slot: usize| {
                         let form = of_operand.entry((orbit, slot)).or_insert_with(|| given[slot].clone());
-                        *form = equations.reduced(form);
+                        *form = equations.reduced(std::mem::take(form));
                         form.clone()
                     };
                     let form = match terms.all[term].kind {
@@ -93,7 +93,7 @@ impl Signs {
                         }
                         Kind::Variable { .. } | Kind::Constant => return None,
                     };
-                    let form = equations.reduced(&form);
+                    let form = equations.reduced(form);
                     of_term[term] = Some(form);
                 }
             }
@@ -137,11 +137,14 @@ impl Equations {
     }
 
     /// In terms of what is not solved for.
-    fn reduced(&mut self, form: &Form) -> Form {
+    fn reduced(&mut self, form: Form) -> Form {
+        if !self.knows_some(&form) {
+            return form;
+        }
         for &unknown in &form.0 {
             self.settle(unknown);
         }
-        self.substituted(form)
+        self.substituted(&form)
     }
 
     /// Writes an unknown that is solved for, and those on the way, in terms of what is not: none of them is gone through
@@ -170,14 +173,20 @@ impl Equations {
 
     /// With what is solved for replaced, once.
     fn substituted(&self, form: &Form) -> Form {
-        if !self.knows_some(form) {
-            return form.clone();
+        let (mut all, mut one) = (Vec::with_capacity(form.0.len()), form.1);
+        for &unknown in &form.0 {
+            match &self.solved[unknown] {
+                Some(known) => {
+                    all.extend(&known.0);
+                    one ^= known.1;
+                }
+                None => all.push(unknown),
+            }
         }
-        let start = (Vec::new(), form.1);
-        form.0.iter().fold(start, |sum, &unknown| match &self.solved[unknown] {
-            Some(known) => plus(&sum, known),
-            None => plus(&sum, &(vec![unknown], false)),
-        })
+        // A few runs that are in order each.
+        all.sort();
+        let odd = all.chunk_by(|a, b| a == b).filter(|same| same.len() % 2 == 1).map(|same| same[0]);
+        (odd.collect(), one)
     }
 
     /// The values of all unknowns; those that are not solved for are zero.
@@ -191,7 +200,7 @@ impl Equations {
 
     /// The oldest unknown yields: what comes later is then in terms of what is near.
     fn equate(&mut self, one: &Form, other: &Form) -> Option<()> {
-        let mut form = self.reduced(&plus(one, other));
+        let mut form = self.reduced(plus(one, other));
         if form.0.is_empty() {
             return (!form.1).then_some(());
         }
