@@ -231,6 +231,7 @@ impl<'t> Planning<'t> {
         let mut level = vec![0_usize; operands.n_units()];
         let mut loops: BTreeMap<(usize, usize), Draft> = BTreeMap::new();
         let (groups, ends) = operands.groups();
+        let mut is_own = vec![false; operands.n_units()];
         for (&first, &end) in [0].iter().chain(&ends).zip(&ends) {
             let group = &groups[first..end];
             let is_cycle = group.len() > 1 || operands.by(group[0]).contains(&group[0]);
@@ -251,9 +252,10 @@ impl<'t> Planning<'t> {
                 self.component[orbit] != component || is_function(orbit) != is_function(group[0])
             };
             let least = |unit: &Unit| level[*unit] + usize::from(*unit < n_orbits && is_elsewhere(*unit));
-            let before =
-                group.iter().flat_map(|&unit| operands.by(unit)).filter(|unit| !group.contains(unit));
+            group.iter().for_each(|&unit| is_own[unit] = true);
+            let before = group.iter().flat_map(|&unit| operands.by(unit)).filter(|unit| !is_own[**unit]);
             let mut at = before.map(least).max().unwrap_or(0);
+            group.iter().for_each(|&unit| is_own[unit] = false);
             let conflicts =
                 |draft: &Draft| direction.is_some_and(|d| draft.direction.is_some_and(|e| d != e));
             while loops.get(&(component, at)).is_some_and(conflicts) {

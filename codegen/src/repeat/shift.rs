@@ -386,13 +386,14 @@ impl<'t> Search<'t> {
             }
             let kind = self.terms.all[user].kind;
             let Some(beside) = self.beside(user, one) else { continue };
-            let fits = |&&candidate: &&Place| {
-                self.terms.all[candidate].kind == kind
-                    && self.shift.previous[candidate].is_none()
-                    && self.beside(candidate, other).is_some_and(|b| self.is_known(beside, b))
+            let fits = |&candidate: &Place| {
+                self.terms.all[candidate].kind == kind && self.shift.previous[candidate].is_none()
             };
-            let mut found = self.terms.all[other].users.iter().filter(fits);
-            if let (Some(&candidate), None) = (found.next(), found.next()) {
+            let known = [Some(beside), self.shift.next[beside]].into_iter().flatten();
+            let mut found = known.flat_map(|beside| self.users_of_both(other, beside)).filter(fits);
+            let both = (found.next(), found.next());
+            drop(found);
+            if let (Some(candidate), None) = both {
                 self.pair(user, candidate);
             }
         }
@@ -437,6 +438,13 @@ impl<'t> Search<'t> {
             }
         }
         found.truncate(n);
+    }
+
+    /// The terms whose operands are these two.
+    fn users_of_both(&self, one: Place, other: Place) -> impl Iterator<Item = Place> {
+        let users = |place: Place| &self.terms.all[place].users;
+        let [few, many] = if users(one).len() <= users(other).len() { [one, other] } else { [other, one] };
+        users(few).iter().copied().filter(move |&user| self.beside(user, few) == Some(many))
     }
 
     /// The other operand of a term.

@@ -147,8 +147,8 @@ impl Equations {
         self.substituted(&form)
     }
 
-    /// Writes an unknown that is solved for, and those on the way, in terms of what is not: none of them is gone through
-    /// again.
+    /// Writes an unknown that is solved for, and those on the way, in terms of what is not: none of them is gone
+    /// through again.
     fn settle(&mut self, unknown: usize) {
         let mut open = vec![unknown];
         while let Some(&unknown) = open.last() {
