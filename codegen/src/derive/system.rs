@@ -362,7 +362,7 @@ impl<'m> System<'m> {
 
     /// Expressions in which some symbols have the given values and all others their definitions.
     pub fn expanded(&mut self, values: &Values, roots: &[ExprId]) -> Vec<ExprId> {
-        Expansion::with_values(&self.definitions, values.clone()).all(&mut self.graph, roots)
+        Expansion::at(&self.definitions, values).all(&mut self.graph, roots)
     }
 
     /// The velocities (s, w') of each moving body.

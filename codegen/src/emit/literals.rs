@@ -24,9 +24,6 @@ pub struct Literals {
     places: RefCell<HashMap<Constant, usize>>,
 }
 
-/// Which constants the occurrences of each literal stand for, by their places, in the order of the text.
-type Occurrences = BTreeMap<String, Vec<usize>>;
-
 impl Literals {
     /// What stands for a literal until the text is complete.
     pub fn stand_in(&self, constant: &Constant) -> TokenStream {
@@ -47,17 +44,27 @@ impl Literals {
 
     /// The complete text with its literals, and the text that says what each of them stands for.
     pub fn write(self, text: TokenStream) -> (TokenStream, String) {
-        let mut written =
-            Written { constants: &self.constants.into_inner(), occurrences: Occurrences::new() };
+        let constants = self.constants.into_inner();
+        let literal = |constant: &Constant| float(constant.to_f64());
+        let literals: Vec<_> = constants.iter().map(literal).collect();
+        let mut written = Written { constants: &constants, literals: &literals, places: Vec::new() };
         let text = written.literals(text);
-        let lines = written.occurrences.iter().map(|(literal, places)| written.line(literal, places));
+        let names: Vec<String> =
+            literals.iter().map(|literal| literal.to_string().replace(' ', "")).collect();
+        let mut occurrences: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for &place in &written.places {
+            occurrences.entry(&names[place]).or_default().push(place);
+        }
+        let lines = occurrences.iter().map(|(literal, places)| written.line(literal, places));
         (text, lines.collect())
     }
 }
 
 struct Written<'a> {
     constants: &'a [Constant],
-    occurrences: Occurrences,
+    literals: &'a [TokenStream],
+    /// What the occurrences of literals stand for, by its place, in the order of the text.
+    places: Vec<usize>,
 }
 
 impl Written<'_> {
@@ -91,9 +98,8 @@ impl Written<'_> {
     }
 
     fn literal(&mut self, place: usize) -> TokenStream {
-        let literal = float(self.constants[place].to_f64());
-        self.occurrences.entry(literal.to_string().replace(' ', "")).or_default().push(place);
-        literal
+        self.places.push(place);
+        self.literals[place].clone()
     }
 
     /// `0.1 = 1/10`, or `0.1 = 1/10, 1000000000000000000001/10000000000000000000000 as 1*3 2`: the first three

@@ -4,9 +4,11 @@
 //! a rule of their own (`A' = A ẽ`); afterwards [`Definitions::expand`] puts in A(p) — of the state's p, or of a
 //! corrected one, so that a Jacobian derived once can be evaluated anywhere.
 
+use crate::expr::by_expr::ByExpr;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use rustc_hash::FxHashMap as HashMap;
+use std::borrow::Cow;
 
 /// What symbols stand for.
 #[derive(Clone, Debug, Default)]
@@ -45,25 +47,29 @@ pub type Values = HashMap<Symbol, ExprId>;
 #[derive(Debug)]
 pub struct Expansion<'a> {
     definitions: &'a Definitions,
-    values: Values,
-    memo: HashMap<ExprId, ExprId>,
+    values: Cow<'a, Values>,
+    memo: ByExpr<ExprId>,
 }
 
 impl<'a> Expansion<'a> {
     pub fn new(definitions: &'a Definitions) -> Self {
-        Self::with_values(definitions, HashMap::default())
+        Self::with_values(definitions, Values::default())
     }
 
     pub fn with_values(definitions: &'a Definitions, values: Values) -> Self {
-        Self { definitions, values, memo: HashMap::default() }
+        Self { definitions, values: Cow::Owned(values), memo: ByExpr::default() }
+    }
+
+    pub fn at(definitions: &'a Definitions, values: &'a Values) -> Self {
+        Self { definitions, values: Cow::Borrowed(values), memo: ByExpr::default() }
     }
 
     pub fn of(&mut self, graph: &mut Graph, root: ExprId) -> ExprId {
-        for id in graph.reachable_beyond(&[root], |id| self.memo.contains_key(&id)) {
+        for id in graph.reachable_beyond(&[root], |id| self.memo.contains(id)) {
             let expanded = self.node(graph, id);
             self.memo.insert(id, expanded);
         }
-        self.memo[&root]
+        self.memo[root]
     }
 
     pub fn all(&mut self, graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
@@ -77,7 +83,10 @@ impl<'a> Expansion<'a> {
                 (None, Some(definition)) => self.of(graph, definition),
                 (None, None) => id,
             },
-            node => graph.rebuilt(node.with_operands(|operand| self.memo[&operand])),
+            node => {
+                let expanded = node.with_operands(|operand| self.memo[operand]);
+                if expanded == node { id } else { graph.rebuilt(expanded) }
+            }
         }
     }
 }

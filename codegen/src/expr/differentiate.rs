@@ -1,5 +1,6 @@
 //! Directional derivatives of expressions: every derivative of the project comes from here.
 
+use crate::expr::by_expr::ByExpr;
 use crate::expr::definitions::Definitions;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
@@ -15,21 +16,21 @@ pub type Direction = BTreeMap<Symbol, ExprId>;
 pub struct Derivative<'a> {
     definitions: &'a Definitions,
     direction: Direction,
-    memo: HashMap<ExprId, ExprId>,
+    memo: ByExpr<ExprId>,
 }
 
 impl<'a> Derivative<'a> {
     pub fn new(definitions: &'a Definitions, direction: Direction) -> Self {
-        Self { definitions, direction, memo: HashMap::default() }
+        Self { definitions, direction, memo: ByExpr::default() }
     }
 
     /// The derivative of one expression.
     pub fn of(&mut self, graph: &mut Graph, root: ExprId) -> ExprId {
-        for id in graph.reachable_beyond(&[root], |id| self.memo.contains_key(&id)) {
+        for id in graph.reachable_beyond(&[root], |id| self.memo.contains(id)) {
             let derivative = self.node(graph, id);
             self.memo.insert(id, derivative);
         }
-        self.memo[&root]
+        self.memo[root]
     }
 
     fn node(&mut self, graph: &mut Graph, id: ExprId) -> ExprId {
@@ -37,45 +38,45 @@ impl<'a> Derivative<'a> {
             Node::Constant(_) => Graph::ZERO,
             Node::Symbol(symbol) => self.symbol(graph, symbol),
             // (a + b)' = a' + b'
-            Node::Add(a, b) => graph.add(self.memo[&a], self.memo[&b]),
+            Node::Add(a, b) => graph.add(self.memo[a], self.memo[b]),
             // (a b)' = a' b + a b'
             Node::Mul(a, b) => {
-                let (left, right) = (graph.mul(self.memo[&a], b), graph.mul(a, self.memo[&b]));
+                let (left, right) = (graph.mul(self.memo[a], b), graph.mul(a, self.memo[b]));
                 graph.add(left, right)
             }
             // (-a)' = -a'
-            Node::Neg(a) => graph.neg(self.memo[&a]),
+            Node::Neg(a) => graph.neg(self.memo[a]),
             // (1/a)' = -a' (1/a)²
             Node::Recip(a) => {
                 let square = graph.mul(id, id);
-                let product = graph.mul(self.memo[&a], square);
+                let product = graph.mul(self.memo[a], square);
                 graph.neg(product)
             }
             // (√a)' = a' / (2 √a)
             Node::Sqrt(a) => {
                 let two = graph.integer(2);
                 let denominator = graph.mul(two, id);
-                graph.div(self.memo[&a], denominator)
+                graph.div(self.memo[a], denominator)
             }
             // sin' = cos · a'
             Node::Sin(a) => {
                 let cos = graph.cos(a);
-                graph.mul(cos, self.memo[&a])
+                graph.mul(cos, self.memo[a])
             }
             // cos' = -sin · a'
             Node::Cos(a) => {
                 let sin = graph.sin(a);
-                let product = graph.mul(sin, self.memo[&a]);
+                let product = graph.mul(sin, self.memo[a]);
                 graph.neg(product)
             }
             // tanh' = (1 − tanh²) · a'
             Node::Tanh(a) => {
                 let square = graph.mul(id, id);
                 let slope = graph.sub(Graph::ONE, square);
-                graph.mul(slope, self.memo[&a])
+                graph.mul(slope, self.memo[a])
             }
             // atan2(y, x)' = (x y' − y x') / (x² + y²)
-            Node::Atan2(y, x) => angle_rate(graph, (y, x), (self.memo[&y], self.memo[&x])),
+            Node::Atan2(y, x) => angle_rate(graph, (y, x), (self.memo[y], self.memo[x])),
         }
     }
 

@@ -1,9 +1,9 @@
 //! Evaluates expressions numerically; shares no code with simplification.
 
+use crate::expr::by_expr::ByExpr;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use num_traits::Float;
-use rustc_hash::FxHashMap as HashMap;
 
 /// What computes the values of some roots, again and again.
 #[derive(Debug)]
@@ -17,17 +17,17 @@ pub struct Program<'g> {
 
 impl<'g> Program<'g> {
     pub fn of(graph: &'g Graph, roots: &[ExprId]) -> Self {
-        let mut places: HashMap<ExprId, usize> = HashMap::default();
+        let mut places: ByExpr<usize> = ByExpr::default();
         let (mut steps, mut constants) = (Vec::new(), Vec::new());
         for id in graph.reachable(roots) {
             let node = graph.node(id);
-            let mut operands = node.operands().map(|operand| places[&operand]);
+            let mut operands = node.operands().map(|operand| places[operand]);
             let first = operands.next().unwrap_or(0);
             steps.push((node, [first, operands.next().unwrap_or(0)]));
             constants.push(if let Node::Constant(constant) = node { constant.to_f64() } else { 0.0 });
-            places.insert(id, places.len());
+            places.insert(id, steps.len() - 1);
         }
-        Self { steps, constants, roots: roots.iter().map(|root| places[root]).collect() }
+        Self { steps, constants, roots: roots.iter().map(|root| places[*root]).collect() }
     }
 
     /// The values of the roots, each symbol having the value that `value` gives it.

@@ -9,12 +9,20 @@ use crate::expr::symbol::Symbol;
 use gyro_model::Rational;
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
-use rustc_hash::{FxBuildHasher, FxHashSet as HashSet};
+use rustc_hash::FxBuildHasher;
+use std::cell::RefCell;
 use std::hash::BuildHasher;
 
 /// Handle of an expression in its [`Graph`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ExprId(u32);
+
+impl ExprId {
+    /// Its place among all expressions of the graph.
+    pub fn place(self) -> usize {
+        self.0 as usize
+    }
+}
 
 /// One expression.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -70,10 +78,12 @@ impl Node {
 #[derive(Debug)]
 pub struct Graph {
     nodes: Vec<Node>,
-    /// By their hashes.
-    index: HashTable<ExprId>,
+    /// By their hashes, which stand beside them: to move an entry, or to tell most that differ, takes no node.
+    index: HashTable<(u32, ExprId)>,
     /// Of each node, what it changes with.
     changes: Vec<Changes>,
+    /// A bit for each node, all of them zero but while a walk is under way.
+    seen: RefCell<Vec<u64>>,
 }
 
 /// What an expression changes with: the last of what its symbols are.
@@ -89,14 +99,15 @@ impl Graph {
     pub const ONE: ExprId = ExprId(1);
 
     pub fn new() -> Self {
-        let mut graph = Self { nodes: Vec::new(), index: HashTable::new(), changes: Vec::new() };
+        let (nodes, index, changes) = (Vec::new(), HashTable::new(), Vec::new());
+        let mut graph = Self { nodes, index, changes, seen: RefCell::default() };
         graph.integer(0);
         graph.integer(1);
         graph
     }
 
     pub fn node(&self, id: ExprId) -> &Node {
-        &self.nodes[id.0 as usize]
+        &self.nodes[id.place()]
     }
 
     /// The exact value of a constant expression.
@@ -107,12 +118,12 @@ impl Graph {
     /// Whether an expression depends on parameters and nothing else: it is computed once, before all steps (see
     /// `parameter_setup`).
     pub fn is_settled(&self, id: ExprId) -> bool {
-        self.changes[id.0 as usize] == Changes::WithParameters
+        self.changes[id.place()] == Changes::WithParameters
     }
 
     /// Whether it changes from step to step.
     pub fn is_changing(&self, id: ExprId) -> bool {
-        self.changes[id.0 as usize] == Changes::WithState
+        self.changes[id.place()] == Changes::WithState
     }
 
     /// Every node that the roots depend on, operands before their users, in the order in which a depth-first walk from
@@ -123,18 +134,24 @@ impl Graph {
 
     /// The same, but for what is known and what only that depends on.
     pub fn reachable_beyond(&self, roots: &[ExprId], is_known: impl Fn(ExprId) -> bool) -> Vec<ExprId> {
-        let mut seen = HashSet::default();
+        let is_seen = |seen: &[u64], id: ExprId| seen[id.place() / 64] & (1 << (id.place() % 64)) != 0;
+        let mut seen = self.seen.take();
+        seen.resize(self.nodes.len().div_ceil(64), 0);
         let mut order = Vec::new();
         // A node is pushed a second time, as complete, beneath its operands.
         let mut stack: Vec<_> = roots.iter().rev().map(|&root| (root, false)).collect();
         while let Some((id, complete)) = stack.pop() {
             if complete {
                 order.push(id);
-            } else if !is_known(id) && seen.insert(id) {
+            } else if !is_seen(&seen, id) && !is_known(id) {
+                seen[id.place() / 64] |= 1 << (id.place() % 64);
                 stack.push((id, true));
-                stack.extend(self.node(id).operands().map(|operand| (operand, false)));
+                let operands = self.node(id).operands().filter(|&operand| !is_seen(&seen, operand));
+                stack.extend(operands.map(|operand| (operand, false)));
             }
         }
+        order.iter().for_each(|id| seen[id.place() / 64] = 0);
+        self.seen.replace(seen);
         order
     }
 
@@ -374,22 +391,23 @@ impl Graph {
 
     /// An expression as it is, without any simplification.
     pub fn intern(&mut self, node: Node) -> ExprId {
-        let Self { nodes, index, changes } = self;
-        let hash = |node: &Node| FxBuildHasher.hash_one(node);
-        let same = |id: &ExprId| nodes[id.0 as usize] == node;
-        let vacant = match index.entry(hash(&node), same, |id| hash(&nodes[id.0 as usize])) {
-            Entry::Occupied(known) => return *known.get(),
+        let Self { nodes, index, changes, .. } = self;
+        let hash = hash(&node);
+        let same = |&(other, id): &(u32, ExprId)| other == hash && nodes[id.place()] == node;
+        let spread = |hash: u32| u64::from(hash) | u64::from(hash) << 32;
+        let vacant = match index.entry(spread(hash), same, |&(hash, _)| spread(hash)) {
+            Entry::Occupied(known) => return known.get().1,
             Entry::Vacant(vacant) => vacant,
         };
         let id = ExprId(
             u32::try_from(nodes.len()).expect("four thousand million expressions do not fit in memory"),
         );
-        vacant.insert(id);
+        vacant.insert((hash, id));
         changes.push(match &node {
             Node::Symbol(Symbol::Parameter(_)) => Changes::WithParameters,
             Node::Symbol(_) => Changes::WithState,
             operation => {
-                let operands = operation.operands().map(|operand| changes[operand.0 as usize]);
+                let operands = operation.operands().map(|operand| changes[operand.place()]);
                 operands.max().unwrap_or(Changes::Never)
             }
         });
@@ -398,92 +416,13 @@ impl Graph {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::expr::evaluate::{evaluate, sample};
-
-    fn symbols(graph: &mut Graph) -> [ExprId; 3] {
-        [0, 1, 2].map(|k| graph.symbol(Symbol::Position { moving_body: 0, k }))
-    }
-
-    #[test]
-    fn equal_expressions_are_one_node() {
-        let mut g = Graph::new();
-        let [x, y, z] = symbols(&mut g);
-        assert_eq!(g.add(x, y), g.add(y, x));
-        assert_eq!(g.mul(x, y), g.mul(y, x));
-        let (difference, opposite) = (g.sub(x, y), g.sub(y, x));
-        assert_eq!(g.neg(difference), opposite);
-        let (product, minus_x) = (g.mul(difference, z), g.neg(x));
-        let other = g.mul(z, opposite);
-        assert_eq!(g.add(product, other), Graph::ZERO);
-        assert_eq!(g.add(x, minus_x), Graph::ZERO);
-    }
-
-    #[test]
-    fn constants_fold_exactly() {
-        let mut g = Graph::new();
-        let [x, y, _] = symbols(&mut g);
-        let (tenth, fifth, three_tenths) = (g.fraction(1, 10), g.fraction(1, 5), g.fraction(3, 10));
-        assert_eq!(g.add(tenth, fifth), three_tenths);
-        let (a, b) = (g.mul(tenth, x), g.mul(fifth, x));
-        assert_eq!(g.add(a, b), g.mul(three_tenths, x));
-        let (two, root) = (g.integer(2), g.sqrt(fifth));
-        let square = g.mul(root, root);
-        assert_eq!(square, fifth);
-        let (ax, ay) = (g.mul(two, x), g.mul(two, y));
-        let (sum, x_plus_y) = (g.add(ax, ay), g.add(x, y));
-        assert_eq!(sum, g.mul(two, x_plus_y));
-    }
-
-    #[test]
-    fn a_reciprocal_undoes_a_product() {
-        let mut g = Graph::new();
-        let [x, _, _] = symbols(&mut g);
-        let inverse = g.recip(x);
-        assert_eq!(g.mul(x, inverse), Graph::ONE);
-        assert_eq!(g.recip(inverse), x);
-        let minus_two = g.integer(-2);
-        let scaled = g.mul(minus_two, x);
-        assert_eq!(g.div(scaled, x), minus_two);
-        // The reciprocal of zero stays what it is: nothing is decided about it here.
-        let undefined = g.recip(Graph::ZERO);
-        assert!(matches!(g.node(undefined), Node::Recip(_)));
-    }
-
-    /// Builds random sums, differences and products and compares each with the same arithmetic on numbers.
-    #[test]
-    fn simplification_keeps_values() {
-        for seed in 0..200u64 {
-            let (mut g, value) = (Graph::new(), sample(seed));
-            let mut pool: Vec<(ExprId, f64)> =
-                symbols(&mut g).map(|x| (x, evaluate(&g, &[x], &value)[0])).to_vec();
-            pool.extend(
-                [-2, -1, 0, 1, 2].map(|n| (g.integer(n), f64::from(i32::try_from(n).expect("small")))),
-            );
-            let mut state = seed;
-            let mut next = |n: usize| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                usize::try_from(state >> 33).expect("31 bits") % n
-            };
-            for _ in 0..40 {
-                let ((a, va), (b, vb)) = (pool[next(pool.len())], pool[next(pool.len())]);
-                let built = match next(4) {
-                    0 => (g.add(a, b), va + vb),
-                    1 => (g.sub(a, b), va - vb),
-                    2 => (g.neg(a), -va),
-                    _ => (g.mul(a, b), va * vb),
-                };
-                pool.push(built);
-            }
-            for (expression, expected) in pool {
-                let value = evaluate(&g, &[expression], &value)[0];
-                assert!(
-                    (value - expected).abs() <= 1e-9 * expected.abs().max(1.0),
-                    "seed {seed}: {value} {expected}"
-                );
-            }
-        }
-    }
+/// The table of nodes takes the last bits for the place and the first seven to tell entries of one place apart. Places
+/// go by the last operand: what is made of neighbours is looked up among neighbours, wherever in memory that is.
+fn hash(node: &Node) -> u32 {
+    let mixed = FxBuildHasher.hash_one(node) as u32;
+    let near = node.operands().max().map_or(mixed >> 11, |last| last.0);
+    mixed << 25 | ((near << 4 | (mixed >> 7 & 15)) & ((1 << 25) - 1))
 }
+
+#[cfg(test)]
+mod tests;

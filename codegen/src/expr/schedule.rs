@@ -1,7 +1,8 @@
 //! From a set of expressions to a straight-line program: what gets a name, in which order, and what it costs.
 
+use crate::expr::by_expr::ByExpr;
 use crate::expr::graph::{ExprId, Graph, Node};
-use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use rustc_hash::FxHashSet as HashSet;
 use std::fmt;
 
 /// Arithmetic operations of a program. A negation is free; a product with a reciprocal that nobody else uses is one
@@ -80,13 +81,13 @@ impl Passes {
         let is_operation =
             |id: ExprId| matches!(graph.node(id), Node::Add(..) | Node::Mul(..) | Node::Recip(_));
         let order = graph.reachable(roots);
-        let mut sizes: HashMap<ExprId, u64> = HashMap::default();
+        let mut sizes: ByExpr<u64> = ByExpr::default();
         for &id in &order {
-            let operands = graph.node(id).operands().map(|operand| sizes[&operand]);
+            let operands = graph.node(id).operands().map(|operand| sizes[operand]);
             sizes.insert(id, operands.fold(u64::from(is_operation(id)), u64::saturating_add));
         }
         Self {
-            written_out: roots.iter().fold(0, |sum, root| sizes[root].saturating_add(sum)),
+            written_out: roots.iter().fold(0, |sum, root| sizes[*root].saturating_add(sum)),
             shared: order.iter().filter(|&&id| is_operation(id)).count(),
             emitted: Operations::count(graph, roots).total(),
         }
@@ -98,7 +99,7 @@ impl Passes {
 pub struct Uses {
     /// Operands before their users.
     pub order: Vec<ExprId>,
-    counts: HashMap<ExprId, usize>,
+    counts: ByExpr<u32>,
 }
 
 impl Uses {
@@ -110,21 +111,21 @@ impl Uses {
     /// The same, but for what is known and what only that depends on.
     fn beyond(graph: &Graph, roots: &[ExprId], is_known: impl Fn(ExprId) -> bool) -> Self {
         let order = graph.reachable_beyond(roots, &is_known);
-        let mut counts: HashMap<ExprId, usize> = HashMap::default();
+        let mut counts: ByExpr<u32> = ByExpr::default();
         for &root in roots.iter().filter(|&&root| !is_known(root)) {
-            *counts.entry(root).or_default() += 1;
+            *counts.or_default(root) += 1;
         }
         for &id in order.iter().rev() {
-            let weight = if matches!(graph.node(id), Node::Neg(_)) { counts[&id] } else { 1 };
+            let weight = if matches!(graph.node(id), Node::Neg(_)) { counts[id] } else { 1 };
             for operand in graph.node(id).operands().filter(|&operand| !is_known(operand)) {
-                *counts.entry(operand).or_default() += weight;
+                *counts.or_default(operand) += weight;
             }
         }
         Self { order, counts }
     }
 
-    pub fn of(&self, id: ExprId) -> usize {
-        self.counts.get(&id).copied().unwrap_or(0)
+    pub fn of(&self, id: ExprId) -> u32 {
+        self.counts.get(id).copied().unwrap_or(0)
     }
 
     /// Numerator and denominator of a product that is better written as a quotient.
@@ -152,14 +153,14 @@ impl Program {
     pub fn new(graph: &Graph, roots: &[ExprId]) -> Self {
         let uses = Uses::count(graph, roots);
         let summed = products_of_sums(graph, &uses.order);
-        let mut inline_size: HashMap<ExprId, usize> = HashMap::default();
+        let mut inline_size: ByExpr<usize> = ByExpr::default();
         let mut temporaries = Vec::new();
         for &id in &uses.order {
             let own = match graph.node(id) {
                 Node::Constant(_) | Node::Symbol(_) => 0,
                 node => {
                     let free = matches!(node, Node::Neg(_));
-                    usize::from(!free) + node.operands().map(|o| inline_size[&o]).sum::<usize>()
+                    usize::from(!free) + node.operands().map(|o| inline_size[o]).sum::<usize>()
                 }
             };
             let shared = uses.of(id) > 1 && !matches!(graph.node(id), Node::Neg(_));

@@ -8,8 +8,8 @@ use super::layout::LinkCoordinates;
 use super::planar;
 use crate::derive::system::System;
 use crate::effort::Effort;
-use crate::expr::definitions::Values;
-use crate::expr::graph::ExprId;
+use crate::expr::definitions::{Expansion, Values};
+use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::Vec3;
 use crate::simplify::cheapest::FinalPasses;
@@ -30,6 +30,8 @@ pub struct Candidates {
     pub balance: JointDynamics,
     /// By elimination.
     pub eliminated: Vec<Candidate>,
+    /// The same in joint coordinates.
+    written: Vec<(String, Vec<ExprId>)>,
     /// The shortest of them in joint coordinates, for what has to be short rather than accurate: the Jacobian. In small
     /// trees that in the bodies' frames too, whose derivatives may be shorter.
     pub shortest: Vec<Vec<ExprId>>,
@@ -69,7 +71,7 @@ impl Candidates {
         }
         let written = expanded(system, &coordinates.in_joints, &eliminated);
         let in_bodies = (embedding.n_unknowns <= MAX_FACTORED).then(|| written[..n_in_bodies].to_vec());
-        let compared = std::iter::once(written).chain(in_bodies);
+        let compared = std::iter::once(written.clone()).chain(in_bodies);
         let mut shortest: Vec<_> =
             compared.map(|forms| FinalPasses::of(false).cheapest(&mut system.graph, forms).roots).collect();
         shortest.dedup();
@@ -83,6 +85,7 @@ impl Candidates {
         Self {
             balance,
             eliminated,
+            written,
             shortest,
             eliminated_on_spins,
             by_gram_schmidt,
@@ -97,34 +100,34 @@ impl Candidates {
         if !cancellation::may_matter(system) {
             return;
         }
-        let (keeping, tried): (_, Vec<_>) = match &self.by_gram_schmidt {
+        let in_joints = &coordinates.in_joints;
+        let (keeping, forms) = match &self.by_gram_schmidt {
             Some((_, keeping)) => {
-                (keeping, self.eliminated.iter().chain(&self.eliminated_on_spins).collect())
+                let keeping = system.expanded(in_joints, keeping);
+                let on_spins = expanded(system, in_joints, &self.eliminated_on_spins);
+                (keeping, self.written.iter().cloned().chain(on_spins).collect())
             }
-            None => (&self.eliminated[0].1, self.eliminated[1..].iter().collect()),
+            None => (self.written[0].1.clone(), self.written[1..].to_vec()),
         };
-        let keeping = system.expanded(&coordinates.in_joints, keeping);
-        let forms = expanded(system, &coordinates.in_joints, tried);
         let losing =
             inaccurate(system, (coordinates, start), &forms, &keeping, self.by_gram_schmidt.is_some());
-        let keeps = |(name, _): &Candidate| losing.iter().all(|losing| losing != name);
-        self.eliminated.retain(keeps);
-        self.eliminated_on_spins.retain(keeps);
+        let keeps = |name: &str| losing.iter().all(|losing| losing != name);
+        self.eliminated.retain(|(name, _)| keeps(name));
+        self.written.retain(|(name, _)| keeps(name));
+        self.eliminated_on_spins.retain(|(name, _)| keeps(name));
     }
 
-    /// Those in terms of rates, expanded with the given values.
-    pub fn on_rates(&self, system: &mut System, values: &Values) -> Vec<(String, Vec<ExprId>)> {
-        expanded(system, values, self.eliminated.iter().chain(&self.by_gram_schmidt))
+    /// Those in terms of rates, in joint coordinates.
+    pub fn on_rates(&self, system: &mut System, coordinates: &Coordinates) -> Vec<(String, Vec<ExprId>)> {
+        let by_gram_schmidt = expanded(system, &coordinates.in_joints, &self.by_gram_schmidt);
+        self.written.iter().cloned().chain(by_gram_schmidt).collect()
     }
 
-    /// All of them, expanded with the given values.
-    pub fn all(&self, system: &mut System, values: &Values) -> Vec<(String, Vec<ExprId>)> {
+    /// All of them, expanded.
+    pub fn all(&self, graph: &mut Graph, expansion: &mut Expansion) -> Vec<(String, Vec<ExprId>)> {
         let eliminated = self.eliminated.iter().chain(&self.eliminated_on_spins);
-        expanded(
-            system,
-            values,
-            eliminated.chain(&self.by_gram_schmidt).chain(&self.by_gram_schmidt_on_spins),
-        )
+        let all = eliminated.chain(&self.by_gram_schmidt).chain(&self.by_gram_schmidt_on_spins);
+        all.map(|(name, roots)| ((*name).to_owned(), expansion.all(graph, roots))).collect()
     }
 }
 
@@ -133,7 +136,9 @@ fn expanded<'c>(
     values: &Values,
     candidates: impl IntoIterator<Item = &'c Candidate>,
 ) -> Vec<(String, Vec<ExprId>)> {
-    let expanded = |(name, roots): &Candidate| ((*name).to_owned(), system.expanded(values, roots));
+    let mut expansion = Expansion::at(&system.definitions, values);
+    let graph = &mut system.graph;
+    let expanded = |(name, roots): &Candidate| ((*name).to_owned(), expansion.all(graph, roots));
     candidates.into_iter().map(expanded).collect()
 }
 

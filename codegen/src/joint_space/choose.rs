@@ -75,7 +75,6 @@ impl JointSpace {
         (functions, start): (&Functions, &Start),
     ) -> Self {
         let passes = FinalPasses::of(false);
-        let in_joints = &coordinates.in_joints;
         let reduced = maps::reduced(system, &coordinates.layout, &coordinates.of_joints);
         let reduced = Expansion::new(&system.definitions).all(&mut system.graph, &reduced);
         let start = maps::joint_start(system, &coordinates.layout, &reduced, start);
@@ -84,16 +83,18 @@ impl JointSpace {
         let of_state = |forms: &[(String, Vec<ExprId>)]| -> Vec<_> {
             forms.iter().map(|(name, rates)| (name.clone(), rates[..n_rates].to_vec())).collect()
         };
-        let on_rates = candidates.on_rates(system, in_joints);
+        let on_rates = candidates.on_rates(system, &coordinates);
         let accelerations = Chosen {
             reductions: candidates.reductions.clone(),
             ..passes.cheapest(&mut system.graph, of_state(&on_rates))
         };
         let (has_corrected, has_reactions) =
             (functions.has(Group::Corrected), functions.has(Group::Reactions));
+        let definitions = system.definitions.clone();
+        let mut of_joints = Expansion::at(&definitions, &coordinates.of_joints);
         let mut at = Vec::new();
         if has_corrected {
-            at = candidates.all(system, &coordinates.of_joints);
+            at = candidates.all(&mut system.graph, &mut of_joints);
         }
         let mut accelerations_at = Chosen::default();
         if has_reactions {
@@ -101,13 +102,13 @@ impl JointSpace {
         }
         let mut corrected = Chosen::default();
         if has_corrected {
-            let forms = corrected_forms(system, &coordinates, &at, exact);
+            let forms = corrected_forms(system, (&coordinates, &mut of_joints), &at, exact);
             corrected = passes.cheapest(&mut system.graph, forms);
         }
         let lambda = multipliers::of(system, textbook, &coordinates);
         let (mut multipliers, mut solution) = (Vec::new(), Vec::new());
         if has_reactions {
-            multipliers = system.expanded(&coordinates.of_joints, &lambda);
+            multipliers = of_joints.all(&mut system.graph, &lambda);
             let known = motions::accelerations_by_symbol(&corrected.roots);
             let solved = system.expanded(&known, &multipliers);
             solution = corrected.roots.iter().copied().chain(solved).collect();
@@ -182,13 +183,13 @@ impl JointSpace {
 /// hold at any state.
 fn corrected_forms(
     system: &mut System,
-    coordinates: &Coordinates,
+    (coordinates, of_joints): (&Coordinates, &mut Expansion),
     forms_of_rates: &[(String, Vec<ExprId>)],
     exact: &[ExprId],
 ) -> Vec<(String, Vec<ExprId>)> {
     let mut forms = Vec::new();
     for (name, rates) in forms_of_rates {
-        let [own, global] = motions::outward(system, coordinates, rates);
+        let [own, global] = motions::outward(system, coordinates, of_joints, rates);
         forms.push((format!("{name} in the bodies' frames"), own));
         forms.push((format!("{name} in the global frame"), global));
     }

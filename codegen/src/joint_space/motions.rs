@@ -4,7 +4,7 @@ use super::coordinates::Coordinates;
 use super::dynamics;
 use super::link_kinematics::{Bias, LinkKinematics};
 use crate::derive::system::System;
-use crate::expr::definitions::Values;
+use crate::expr::definitions::{Expansion, Values};
 use crate::expr::graph::ExprId;
 use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::symbol::Symbol;
@@ -18,11 +18,17 @@ pub fn accelerations_by_symbol(accelerations: &[ExprId]) -> Values {
     accelerations.iter().enumerate().map(|(index, &value)| (symbol(index), value)).collect()
 }
 
-/// (s̈, ẇ') of each moving body from the rates' rates: translations in each body's own frame, or in the global one.
-pub fn outward(system: &mut System, coordinates: &Coordinates, rates: &[ExprId]) -> [Vec<ExprId>; 2] {
+/// (s̈, ẇ') of each moving body from the rates' rates, expanded: translations in each body's own frame, or in the
+/// global one.
+pub fn outward(
+    system: &mut System,
+    coordinates: &Coordinates,
+    expansion: &mut Expansion,
+    rates: &[ExprId],
+) -> [Vec<ExprId>; 2] {
     [false, true].map(|is_global| {
         let motions = motions(system, &coordinates.links, (rates, Part::All), is_global);
-        system.expanded(&coordinates.of_joints, &motions)
+        expansion.all(&mut system.graph, &motions)
     })
 }
 

@@ -9,14 +9,18 @@ use std::hash::{Hash, Hasher};
 pub fn colours(terms: &Terms, n_steps: usize) -> Vec<u64> {
     let mut colours: Vec<u64> = terms.all.iter().map(|term| hash(&(term.kind, term.is_root))).collect();
     for _ in 0..n_steps {
-        colours = (0..terms.all.len()).map(|place| refined(terms, &colours, place)).collect();
+        let mut users = Vec::new();
+        colours = (0..terms.all.len()).map(|place| refined(terms, &colours, place, &mut users)).collect();
     }
     colours
 }
 
-fn refined(terms: &Terms, colours: &[u64], place: Place) -> u64 {
+/// `users` is room for those of the term.
+fn refined(terms: &Terms, colours: &[u64], place: Place, users: &mut Vec<(u64, bool)>) -> u64 {
     let term = &terms.all[place];
-    let mut operands: Vec<u64> = term.operands.iter().map(|operand| colours[operand.term]).collect();
+    let mut operands = [0; 2];
+    let operands = &mut operands[..term.operands.len()];
+    operands.iter_mut().zip(&*term.operands).for_each(|(colour, operand)| *colour = colours[operand.term]);
     if term.kind.is_commutative() {
         operands.sort_unstable();
     }
@@ -25,7 +29,8 @@ fn refined(terms: &Terms, colours: &[u64], place: Place) -> u64 {
         let is_first = user_term.operands[0].term == place;
         (colours[user], !user_term.kind.is_commutative() && is_first)
     };
-    let mut users: Vec<_> = term.users.iter().map(as_operand).collect();
+    users.clear();
+    users.extend(term.users.iter().map(as_operand));
     users.sort_unstable();
     hash(&(colours[place], operands, users))
 }

@@ -1,5 +1,6 @@
 //! Which orbits are computed in which loop, when, and for which parts.
 
+use super::needs::Needs;
 use super::orbits::{Orbit, Orbits, signed};
 use super::terms::{Place, Terms};
 use rustc_hash::FxHashSet as HashSet;
@@ -44,8 +45,9 @@ pub struct Loops {
 type Unit = usize;
 
 /// Orbits on their way into loops.
+#[derive(Clone)]
 pub struct Planning<'t> {
-    terms: &'t Terms,
+    pub terms: &'t Terms,
     pub orbits: &'t Orbits,
     edges: Vec<Vec<(Orbit, i64)>>,
     pub times: Vec<i64>,
@@ -59,8 +61,7 @@ pub struct Planning<'t> {
 
 impl Loops {
     /// `None` if there are none.
-    pub fn plan(terms: &Terms, orbits: &Orbits) -> Option<Self> {
-        let mut planning = Planning::aligned(terms, orbits);
+    pub fn plan(mut planning: Planning) -> Option<Self> {
         planning.levels().ok()?;
         planning.trim();
         let all = loop {
@@ -125,16 +126,16 @@ impl<'t> Planning<'t> {
             }
             n_components += 1;
         }
+        let mut votes: Vec<i64> = Vec::new();
         for _ in 0..SWEEPS {
             for (orbit, beside) in beside.iter().enumerate() {
-                let mut votes: BTreeMap<i64, usize> = BTreeMap::new();
-                for &(other, offset) in beside {
-                    *votes.entry(self.times[other] + offset).or_default() += 1;
-                }
+                votes.clear();
+                votes.extend(beside.iter().map(|&(other, offset)| self.times[other] + offset));
+                votes.sort_unstable();
                 let own = self.times[orbit];
-                let most = votes.iter().max_by_key(|&(&time, &count)| (count, time == own));
-                if let Some((&time, _)) = most {
-                    self.times[orbit] = time;
+                let alike = votes.chunk_by(|a, b| a == b);
+                if let Some(most) = alike.max_by_key(|alike| (alike.len(), alike[0] == own)) {
+                    self.times[orbit] = most[0];
                 }
             }
         }
@@ -227,29 +228,34 @@ impl<'t> Planning<'t> {
     fn levels(&mut self) -> Result<Vec<Loop>, usize> {
         let operands = self.operands_of_units();
         let n_orbits = self.times.len();
-        let mut level = vec![0_usize; operands.len()];
+        let mut level = vec![0_usize; operands.n_units()];
         let mut loops: BTreeMap<(usize, usize), Draft> = BTreeMap::new();
-        for group in strongly_connected(&operands) {
-            let is_cycle = group.len() > 1 || operands[group[0]].contains(&group[0]);
+        let (groups, ends) = operands.groups();
+        let mut is_own = vec![false; operands.n_units()];
+        for (&first, &end) in [0].iter().chain(&ends).zip(&ends) {
+            let group = &groups[first..end];
+            let is_cycle = group.len() > 1 || operands.by(group[0]).contains(&group[0]);
             if group[0] >= n_orbits || group.len() > 1 && group.iter().any(|&unit| unit >= n_orbits) {
                 if is_cycle {
                     let orbit = group.iter().find(|&&unit| unit < n_orbits);
                     return Err(self.component[*orbit.expect("terms by themselves are in order")]);
                 }
                 let after = |&operand: &Unit| level[operand] + usize::from(operand < n_orbits);
-                level[group[0]] = operands[group[0]].iter().map(after).max().unwrap_or(0);
+                level[group[0]] = operands.by(group[0]).iter().map(after).max().unwrap_or(0);
                 continue;
             }
             let component = self.component[group[0]];
-            let direction = if is_cycle { Some(self.direction(&group).ok_or(component)?) } else { None };
+            let direction = if is_cycle { Some(self.direction(group).ok_or(component)?) } else { None };
             let is_function = |orbit: Orbit| self.terms.all[self.orbits.members[orbit][0]].kind.is_function();
             // Functions have a loop of their own: around a call nothing stays in a processor's registers.
             let is_elsewhere = |orbit: Orbit| {
                 self.component[orbit] != component || is_function(orbit) != is_function(group[0])
             };
             let least = |unit: &Unit| level[*unit] + usize::from(*unit < n_orbits && is_elsewhere(*unit));
-            let before = group.iter().flat_map(|&unit| &operands[unit]).filter(|unit| !group.contains(unit));
+            group.iter().for_each(|&unit| is_own[unit] = true);
+            let before = group.iter().flat_map(|&unit| operands.by(unit)).filter(|unit| !is_own[**unit]);
             let mut at = before.map(least).max().unwrap_or(0);
+            group.iter().for_each(|&unit| is_own[unit] = false);
             let conflicts =
                 |draft: &Draft| direction.is_some_and(|d| draft.direction.is_some_and(|e| d != e));
             while loops.get(&(component, at)).is_some_and(conflicts) {
@@ -257,8 +263,8 @@ impl<'t> Planning<'t> {
             }
             let draft = loops.entry((component, at)).or_default();
             draft.direction = draft.direction.or(direction);
-            self.shift(&group, draft);
-            draft.orbits.extend(&group);
+            self.shift(group, draft);
+            draft.orbits.extend(group);
             group.iter().for_each(|&unit| level[unit] = at);
         }
         let mut drafts: Vec<_> = loops.into_iter().collect();
@@ -267,25 +273,16 @@ impl<'t> Planning<'t> {
         Ok(drafts.into_iter().filter_map(finished).collect())
     }
 
-    fn operands_of_units(&self) -> Vec<Vec<Unit>> {
-        let mut operands: Vec<Vec<Unit>> = vec![Vec::new(); self.times.len() + self.terms.all.len()];
+    fn operands_of_units(&self) -> Needs {
         let n_orbits = self.times.len();
         if self.ranges.iter().all(Option::is_none) {
-            for (of, edges) in operands.iter_mut().zip(&self.edges) {
-                of.extend(edges.iter().map(|&(operand, _)| operand));
-            }
-            operands.truncate(n_orbits);
-            return operands;
+            let of = |(orbit, edges): (Orbit, &Vec<(Orbit, i64)>)| -> Vec<_> {
+                edges.iter().map(|&(operand, _)| (orbit, operand)).collect()
+            };
+            return Needs::of(n_orbits, || self.edges.iter().enumerate().flat_map(of));
         }
-        for term in 0..self.terms.all.len() {
-            let of = &mut operands[self.unit(term)];
-            of.extend(self.orbits.operands[term].iter().map(|operand| self.unit(operand.term)));
-        }
-        operands.iter_mut().for_each(|of| {
-            of.sort_unstable();
-            of.dedup();
-        });
-        operands
+        let units: Vec<Unit> = (0..self.terms.all.len()).map(|term| self.unit(term)).collect();
+        Needs::of(n_orbits + units.len(), || self.orbits.pairs(&units)).sorted()
     }
 
     /// In which order a cycle of orbits has to be computed, its times made fit.
@@ -365,19 +362,15 @@ impl<'t> Planning<'t> {
                 }
             }
         }
-        let unit = |term: Place| of_term[term].map_or(all.len() + term, |(index, _)| index);
-        let mut operands: Vec<Vec<Unit>> = vec![Vec::new(); all.len() + of_term.len()];
-        for (term, of) in self.orbits.operands.iter().enumerate() {
-            let own = unit(term);
-            operands[own].extend(of.iter().map(|operand| unit(operand.term)).filter(|&other| other != own));
+        let unit =
+            |(term, of): (Place, &Option<(usize, i64)>)| of.map_or(all.len() + term, |(index, _)| index);
+        let units: Vec<Unit> = of_term.iter().enumerate().map(unit).collect();
+        let between = || self.orbits.pairs(&units).filter(|(user, operand)| user != operand);
+        let (mut order, ends) = Needs::of(all.len() + units.len(), between).groups();
+        if ends.len() < order.len() {
+            return None;
         }
-        let mut order = Vec::new();
-        for group in strongly_connected(&operands) {
-            if group.len() > 1 {
-                return None;
-            }
-            order.extend(group.into_iter().filter(|&unit| unit < all.len()));
-        }
+        order.retain(|&unit| unit < all.len());
         if order.is_empty() {
             return None;
         }
@@ -398,49 +391,14 @@ struct Draft {
     orbits: Vec<Orbit>,
 }
 
-/// Groups of what depends on each other in a circle, operands before their users (R. Tarjan (1972)).
-fn strongly_connected(operands: &[Vec<usize>]) -> Vec<Vec<usize>> {
-    const UNSEEN: usize = usize::MAX;
-    let n = operands.len();
-    let (mut index, mut low) = (vec![UNSEEN; n], vec![0; n]);
-    let (mut is_open, mut open, mut groups) = (vec![false; n], Vec::new(), Vec::new());
-    let mut n_seen = 0;
-    for start in 0..n {
-        if index[start] != UNSEEN {
-            continue;
-        }
-        let mut path = vec![(start, 0)];
-        while let Some((at, next)) = path.pop() {
-            if next == 0 {
-                (index[at], low[at]) = (n_seen, n_seen);
-                n_seen += 1;
-                open.push(at);
-                is_open[at] = true;
-            }
-            if let Some(&operand) = operands[at].get(next) {
-                path.push((at, next + 1));
-                if index[operand] == UNSEEN {
-                    path.push((operand, 0));
-                } else if is_open[operand] {
-                    low[at] = low[at].min(index[operand]);
-                }
-                continue;
-            }
-            if let Some(&(user, _)) = path.last() {
-                low[user] = low[user].min(low[at]);
-            }
-            if low[at] == index[at] {
-                let from = open.iter().rposition(|&other| other == at).expect("it is open");
-                let group: Vec<usize> = open.drain(from..).collect();
-                group.iter().for_each(|&other| is_open[other] = false);
-                groups.push(group);
-            }
-        }
-    }
-    groups
-}
-
 impl Loops {
+    /// Operations of its text at least: those outside of loops, and one for each orbit in a loop.
+    pub fn n_written(&self, terms: &Terms) -> usize {
+        let outside = terms.all.iter().zip(&self.of_term).filter(|(_, looped)| looped.is_none());
+        let inside: usize = self.all.iter().map(|each| each.orbits.len()).sum();
+        outside.filter(|(term, _)| term.kind.is_counted()).count() + inside
+    }
+
     /// The member of an orbit for a part.
     pub fn member(&self, orbits: &Orbits, orbit: Orbit, part: i64) -> Place {
         let k = usize::try_from(part - self.times[orbit]).expect("each orbit has the parts of its loop");

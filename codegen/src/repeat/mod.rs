@@ -11,6 +11,7 @@ mod colours;
 mod columns;
 mod kernel;
 mod loops;
+mod needs;
 mod orbits;
 mod recurrence;
 mod rolled;
@@ -27,7 +28,7 @@ use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Operations;
 use crate::expr::symbol::Symbol;
 use columns::{Columns, Element};
-use loops::Loops;
+use loops::{Loops, Planning};
 use orbits::Orbits;
 use rolled::Rolling;
 use shift::{Shift, Way};
@@ -75,18 +76,17 @@ pub fn rolled(
     let size = [LARGE, SMALL].into_iter().find(|size| n_operations >= size.n_least)?;
     let is_thorough = effort == Effort::Full && n_operations >= LARGE.n_least;
     let n_ways = if is_thorough { WAYS.len() } else { 1 };
-    rolled_by(&WAYS[..n_ways], n_operations.div_ceil(size.shorter), (graph, roots), element)
+    rolled_by(&WAYS[..n_ways], (n_operations, n_operations.div_ceil(size.shorter)), (graph, roots), element)
         .map(Rolled::hastened)
 }
 
-/// The same in some ways, if its text is shorter than this.
+/// The same of so many operations in some ways, if its text is shorter than this.
 fn rolled_by(
     ways: &[Way],
-    longest: usize,
+    (n_operations, longest): (usize, usize),
     (graph, roots): (&Graph, &[ExprId]),
     element: &dyn Fn(Symbol) -> Option<Element>,
 ) -> Option<Rolled> {
-    let n_operations = Operations::count(graph, roots).total();
     let terms = Terms::of(graph, roots);
     let mut shortest: Option<(Rolled, Way)> = None;
     for &way in ways {
@@ -100,7 +100,7 @@ fn rolled_by(
             }
             None => longest,
         };
-        let found = in_one_way(graph, &terms, element, way);
+        let found = in_one_way(graph, &terms, element, (way, least));
         shortest = found.filter(|rolled| rolled.length() < least).map(|rolled| (rolled, way)).or(shortest);
     }
     shortest.map(|(rolled, _)| rolled)
@@ -110,26 +110,36 @@ fn in_one_way(
     graph: &Graph,
     terms: &Terms,
     element: &dyn Fn(Symbol) -> Option<Element>,
-    way: Way,
+    (way, least): (Way, usize),
 ) -> Option<Rolled> {
-    let (terms, shift) = &Shift::find(graph, terms, way);
+    let n_originals = terms.all.len();
+    let (terms, shift) = Shift::find(graph, terms, way);
+    let terms = &*terms;
+    let n_operations = terms.all.iter().filter(|term| term.kind.is_operation()).count();
     let element = |place: Place| match graph.node(terms.all[place].id) {
         Node::Symbol(symbol) => element(*symbol),
         _ => None,
     };
-    let rolled = |orbits: &Orbits| {
-        let loops = &Loops::plan(terms, orbits)?;
+    let rolled = |planning: Planning| {
+        let orbits = planning.orbits;
+        let loops = &Loops::plan(planning)?;
+        // Copies may turn out to be the same again.
+        let n_written = (loops.n_written(terms) + n_originals).saturating_sub(terms.all.len());
+        if n_written >= least && SHORT * n_written >= n_operations {
+            return None;
+        }
         let columns = &Columns::of(terms, orbits, loops, &element)?;
         let signs = &Signs::solve(terms, orbits, loops, columns)?;
         Some(Rolling { source: graph, terms, orbits, loops, columns, signs }.rolled())
     };
-    let orbits = Orbits::of(terms, shift, LEAST_PARTS);
-    let whole = rolled(&orbits);
-    let n_operations = terms.all.iter().filter(|term| term.kind.is_operation()).count();
+    let orbits = Orbits::of(terms, &shift, LEAST_PARTS);
+    let planning = Planning::aligned(terms, &orbits);
+    let whole = rolled(planning.clone());
     if whole.as_ref().is_some_and(|rolled| SHORT * rolled.length() < n_operations) {
         return whole;
     }
-    let cut = segments::cut(terms, &orbits, LEAST_PARTS).and_then(|pieces| rolled(&pieces));
+    let cut =
+        segments::cut(&planning, LEAST_PARTS).and_then(|pieces| rolled(Planning::aligned(terms, &pieces)));
     whole.into_iter().chain(cut).min_by_key(Rolled::length)
 }
 

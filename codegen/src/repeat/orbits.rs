@@ -1,7 +1,7 @@
 //! Orbits: terms that are mapped to each other by the shift, in order.
 
 use super::shift::Shift;
-use super::terms::{Operand, Place, Terms};
+use super::terms::{Operand, Operands, Place, Terms};
 use std::collections::BTreeMap;
 
 /// Index of an orbit.
@@ -14,7 +14,7 @@ pub struct Orbits {
     /// Orbit of each term, and which of its members it is.
     pub of_term: Vec<Option<(Orbit, usize)>>,
     /// The operands of each term, in the order in which they correspond to those of the other members.
-    pub operands: Vec<Vec<Operand>>,
+    pub operands: Vec<Operands>,
     /// Orbits of different groups are not computed in one loop.
     pub groups: Vec<usize>,
 }
@@ -23,7 +23,7 @@ impl Orbits {
     /// Those with at least so many members.
     pub fn of(terms: &Terms, shift: &Shift, n_least: usize) -> Self {
         let n = terms.all.len();
-        let operands = terms.all.iter().map(|term| term.operands.clone()).collect();
+        let operands = terms.all.iter().map(|term| term.operands).collect();
         let (of_term, groups) = (vec![None; n], Vec::new());
         let mut orbits = Self { members: Vec::new(), of_term, operands, groups };
         for first in 0..n {
@@ -57,7 +57,7 @@ impl Orbits {
         let middle = members.len() / 2;
         let forward = (middle..members.len() - 1).map(|k| (k, k + 1));
         for (from, to) in forward.chain((0..middle).rev().map(|k| (k + 1, k))) {
-            let [a, b] = [from, to].map(|k| self.operands[members[k]].clone());
+            let [a, b] = [from, to].map(|k| self.operands[members[k]]);
             let pair = |a: Operand, b: Operand| {
                 if from < to { corresponds(a.term, b.term) } else { corresponds(b.term, a.term) }
             };
@@ -67,12 +67,20 @@ impl Orbits {
         }
     }
 
+    /// The unit of each term and that of each of its operands.
+    pub fn pairs(&self, units: &[usize]) -> impl Iterator<Item = (usize, usize)> {
+        self.operands
+            .iter()
+            .zip(units)
+            .flat_map(move |(operands, &own)| operands.iter().map(move |operand| (own, units[operand.term])))
+    }
+
     /// Each orbit of its group that operands of an orbit belong to, and how many members later the user comes: what
     /// holds for most members.
     pub fn main_edges(&self, orbit: Orbit) -> Vec<(Orbit, i64)> {
         let mut counts: BTreeMap<(Orbit, i64), usize> = BTreeMap::new();
         for (k, &member) in self.members[orbit].iter().enumerate() {
-            for operand in &self.operands[member] {
+            for operand in self.operands[member].iter() {
                 if let Some((of, place)) = self.of_term[operand.term]
                     && self.groups[of] == self.groups[orbit]
                 {

@@ -6,6 +6,7 @@
 //! as they are; roundings are those of another order.
 
 use super::kernel::{At, Local, Repeat, Rolled};
+use crate::expr::by_expr::ByExpr;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Uses;
 use crate::expr::symbol::Symbol;
@@ -87,16 +88,16 @@ impl Recurrence {
         let mut arrivals = HashMap::default();
         for _ in 0..n_parts {
             let all = self.arrivals(uses, &arrivals);
-            arrivals = self.carried.iter().map(|&(symbol, at)| (symbol, all[&self.values[at]])).collect();
+            arrivals = self.carried.iter().map(|&(symbol, at)| (symbol, all[self.values[at]])).collect();
         }
         arrivals
     }
 
     /// When everything arrives if carried symbols arrive so, and all else was there long ago.
-    fn arrivals(&self, uses: &Uses, carried: &HashMap<Symbol, u64>) -> HashMap<ExprId, u64> {
-        let mut arrivals = HashMap::default();
+    fn arrivals(&self, uses: &Uses, carried: &HashMap<Symbol, u64>) -> ByExpr<u64> {
+        let mut arrivals = ByExpr::default();
         for &id in &uses.order {
-            let at = arrival(&self.graph, id, carried, |operand| arrivals[&operand]);
+            let at = arrival(&self.graph, id, carried, |operand| arrivals[operand]);
             arrivals.insert(id, at);
         }
         arrivals
@@ -113,8 +114,8 @@ impl Recurrence {
         let uses = Uses::count(&self.graph, &self.values);
         let carried = self.after(&uses, PARTS);
         let within = within_sums(&self.graph, &uses);
-        let mut to = Reordering { graph: Graph::new(), arrivals: HashMap::default(), carried: &carried };
-        let mut new: HashMap<ExprId, ExprId> = HashMap::default();
+        let mut to = Reordering { graph: Graph::new(), arrivals: ByExpr::default(), carried: &carried };
+        let mut new: ByExpr<ExprId> = ByExpr::default();
         for &id in uses.order.iter().filter(|id| !within.contains(id)) {
             let node = self.graph.node(id);
             let made = if let Node::Add(..) = node {
@@ -122,11 +123,11 @@ impl Recurrence {
                 self.terms(id, false, &within, &new, &mut terms);
                 to.sum(terms)
             } else {
-                to.put(node.with_operands(|operand| new[&operand]))
+                to.put(node.with_operands(|operand| new[operand]))
             };
             new.insert(id, made);
         }
-        let values = self.values.iter().map(|value| new[value]).collect();
+        let values = self.values.iter().map(|value| new[*value]).collect();
         Self { graph: to.graph, values, carried: self.carried.clone() }
     }
 
@@ -136,7 +137,7 @@ impl Recurrence {
         id: ExprId,
         is_negative: bool,
         within: &HashSet<ExprId>,
-        new: &HashMap<ExprId, ExprId>,
+        new: &ByExpr<ExprId>,
         terms: &mut Vec<(bool, ExprId)>,
     ) {
         for operand in self.graph.node(id).operands() {
@@ -145,7 +146,7 @@ impl Recurrence {
             if within.contains(&inner) {
                 self.terms(inner, is_negative, within, new, terms);
             } else {
-                terms.push((is_negative, new[&inner]));
+                terms.push((is_negative, new[inner]));
             }
         }
     }
@@ -187,21 +188,21 @@ fn arrival(graph: &Graph, id: ExprId, carried: &HashMap<Symbol, u64>, of: impl F
 
 struct Reordering<'c> {
     graph: Graph,
-    arrivals: HashMap<ExprId, u64>,
+    arrivals: ByExpr<u64>,
     carried: &'c HashMap<Symbol, u64>,
 }
 
 impl Reordering<'_> {
     fn put(&mut self, node: Node) -> ExprId {
         let id = self.graph.intern(node);
-        let at = arrival(&self.graph, id, self.carried, |operand| self.arrivals[&operand]);
+        let at = arrival(&self.graph, id, self.carried, |operand| self.arrivals[operand]);
         self.arrivals.insert(id, at);
         id
     }
 
     /// Terms that arrive first are added first. Of those that arrive together the order stays.
     fn sum(&mut self, mut terms: Vec<(bool, ExprId)>) -> ExprId {
-        terms.sort_by_key(|(_, term)| self.arrivals[term]);
+        terms.sort_by_key(|(_, term)| self.arrivals[*term]);
         let mut terms = terms.into_iter();
         let first = terms.next().expect("a sum has two terms");
         let (is_negative, sum) = terms.fold(first, |sum, term| self.pair(sum, term));
@@ -239,7 +240,7 @@ mod tests {
     #[test]
     fn a_sum_of_negatives_is_negative() {
         let carried = HashMap::default();
-        let mut to = Reordering { graph: Graph::new(), arrivals: HashMap::default(), carried: &carried };
+        let mut to = Reordering { graph: Graph::new(), arrivals: ByExpr::default(), carried: &carried };
         let terms: Vec<_> = (0..3).map(|n| (true, to.put(Node::Symbol(Symbol::Local(n))))).collect();
         let sum = to.sum(terms);
         let found = evaluate(&to.graph, &[sum], |symbol| match symbol {

@@ -42,7 +42,7 @@ impl Rolling<'_> {
         });
         let loops = loops.collect();
         let signed = |root: &Operand| {
-            let value = values[&root.term];
+            let value = values[root.term].expect("every root has a value");
             if root.is_negative { graph.neg(value) } else { value }
         };
         let roots = self.terms.roots.iter().map(signed).collect();
@@ -89,8 +89,8 @@ impl Rolling<'_> {
     }
 
     /// The values of terms outside of loops, loops' results being read from arrays.
-    fn outside(&self, graph: &mut Graph, arrays: &[Array]) -> HashMap<Place, ExprId> {
-        let mut values = HashMap::default();
+    fn outside(&self, graph: &mut Graph, arrays: &[Array]) -> Vec<Option<ExprId>> {
+        let mut values = vec![None; self.terms.all.len()];
         for place in 0..self.terms.all.len() {
             let value = match self.loops.of_term[place] {
                 Some((_, part)) => {
@@ -100,18 +100,22 @@ impl Rolling<'_> {
                     let Some(column) = column else { continue };
                     let [array, row, column] = self.place(arrays, column, part);
                     let entry = graph.symbol(Symbol::Entry { array, row, column });
-                    if self.signs.of_term[&place] { graph.neg(entry) } else { entry }
+                    if self.signs.of_term[place] { graph.neg(entry) } else { entry }
                 }
                 None => {
                     let term = &self.terms.all[place];
                     let node = self.source.node(term.id);
-                    let operands =
-                        node.operands().map(|id| Some((id, self.operand(graph, &values, term, id)?)));
-                    let Some(operands) = operands.collect::<Option<HashMap<_, _>>>() else { continue };
-                    built(graph, node.with_operands(|id| operands[&id]))
+                    let operands: Option<Vec<_>> = node
+                        .operands()
+                        .map(|id| Some((id, self.operand(graph, &values, term, id)?)))
+                        .collect();
+                    let Some(operands) = operands else { continue };
+                    let other =
+                        |id| operands.iter().find(|(operand, _)| *operand == id).expect("it is one").1;
+                    built(graph, node.with_operands(other))
                 }
             };
-            values.insert(place, value);
+            values[place] = Some(value);
         }
         values
     }
@@ -120,12 +124,12 @@ impl Rolling<'_> {
     fn operand(
         &self,
         graph: &mut Graph,
-        values: &HashMap<Place, ExprId>,
+        values: &[Option<ExprId>],
         term: &Term,
         id: ExprId,
     ) -> Option<ExprId> {
         if let Some(operand) = term.operands.iter().find(|operand| self.terms.all[operand.term].id == id) {
-            return values.get(&operand.term).copied();
+            return values[operand.term];
         }
         match self.source.node(id) {
             Node::Neg(x) => self.operand(graph, values, term, *x).map(|x| graph.neg(x)),
@@ -139,12 +143,12 @@ impl Rolling<'_> {
         index: usize,
         graph: &mut Graph,
         arrays: &[Array],
-        values: &HashMap<Place, ExprId>,
+        values: &[Option<ExprId>],
     ) -> Vec<([usize; 3], ExprId)> {
         let mut stores = Vec::new();
         for (place, column) in self.columns.all.iter().enumerate() {
             for (&row, &term) in column.rows.iter().filter(|(row, _)| column.readers[row] == index) {
-                let value = values[&term];
+                let value = values[term].expect("what is stored is known");
                 let is_opposite = self.signs.of_row.get(&(place, row)).copied().unwrap_or(false);
                 let value = if is_opposite { graph.neg(value) } else { value };
                 stores.push((self.place(arrays, place, row), value));
@@ -158,7 +162,7 @@ impl Rolling<'_> {
         &self,
         index: usize,
         arrays: &[Array],
-        values: &HashMap<Place, ExprId>,
+        values: &[Option<ExprId>],
         fixed: &mut Vec<ExprId>,
     ) -> Repeat {
         let found = &self.loops.all[index];
@@ -212,7 +216,7 @@ struct Body<'r, 't> {
     locals: Vec<Local>,
     table: Vec<Vec<Constant>>,
     fixed: &'r mut Vec<ExprId>,
-    outside: &'r HashMap<Place, ExprId>,
+    outside: &'r [Option<ExprId>],
 }
 
 impl Body<'_, '_> {
@@ -254,7 +258,7 @@ impl Body<'_, '_> {
             Source::Same(term) => match symbol(term) {
                 Some(symbol) => self.graph.symbol(symbol),
                 None => {
-                    let value = self.outside[&term];
+                    let value = self.outside[term].expect("what all parts read is known");
                     let at = self.fixed.iter().position(|&known| known == value).unwrap_or_else(|| {
                         self.fixed.push(value);
                         self.fixed.len() - 1
@@ -317,11 +321,11 @@ impl Body<'_, '_> {
             let operand = orbits.operands[term][0];
             let of_operand = operand.is_negative
                 ^ match &columns.sources[&orbit][0] {
-                    Source::Local(_) => signs.of_term[&operand.term],
+                    Source::Local(_) => signs.of_term[operand.term],
                     Source::Row { column, offset } => {
                         let row = part + offset;
                         if columns.is_computed(loops, orbits, *column, row) {
-                            signs.of_term[&operand.term]
+                            signs.of_term[operand.term]
                         } else {
                             signs.of_row[&(*column, row)]
                         }
@@ -329,7 +333,7 @@ impl Body<'_, '_> {
                     Source::Element { .. } | Source::Same(_) => false,
                 };
             let of_operand = kind == Kind::Scaled && of_operand;
-            if signs.of_term[&term] ^ of_operand { constant.neg() } else { constant.clone() }
+            if signs.of_term[term] ^ of_operand { constant.neg() } else { constant.clone() }
         };
         (found.first..=found.last).map(constant).collect()
     }

@@ -3,7 +3,6 @@
 
 use super::loops::Planning;
 use super::orbits::{Orbit, Orbits, signed};
-use super::terms::Terms;
 
 /// More times than this are not cut: the work grows with their square.
 const MOST_TIMES: usize = 2000;
@@ -12,18 +11,18 @@ const MOST_TIMES: usize = 2000;
 type Span = (i64, i64);
 
 /// The orbits, cut where their parts are interrupted; `None` if there is nothing to be cut.
-pub fn cut(terms: &Terms, orbits: &Orbits, n_least: usize) -> Option<Orbits> {
-    let planning = Planning::aligned(terms, orbits);
+pub fn cut(planning: &Planning, n_least: usize) -> Option<Orbits> {
+    let orbits = planning.orbits;
     let n_components = planning.component.iter().max().map_or(0, |last| last + 1);
     let mut runs: Vec<Vec<Span>> = vec![Vec::new(); n_components];
     for orbit in 0..orbits.members.len() {
-        runs[planning.component[orbit]].extend(even_runs(&planning, orbit));
+        runs[planning.component[orbit]].extend(even_runs(planning, orbit));
     }
     let segments: Vec<Vec<Span>> = runs.iter().map(|runs| best_segments(runs, signed(n_least))).collect();
     if segments.iter().all(|segments| segments.len() < 2) {
         return None;
     }
-    let n = terms.all.len();
+    let n = planning.terms.all.len();
     let (of_term, operands) = (vec![None; n], orbits.operands.clone());
     let mut pieces = Orbits { members: Vec::new(), of_term, operands, groups: Vec::new() };
     for (orbit, members) in orbits.members.iter().enumerate() {
@@ -48,15 +47,13 @@ pub fn cut(terms: &Terms, orbits: &Orbits, n_least: usize) -> Option<Orbits> {
 /// The longest spans in which each operand of an orbit comes from one orbit, so many parts before.
 fn even_runs(planning: &Planning, orbit: Orbit) -> Vec<Span> {
     let Planning { orbits, times, component, .. } = planning;
-    let source = |k: usize| -> Vec<Option<(Orbit, i64)>> {
+    let source = |k: usize| -> [Option<(Orbit, i64)>; 2] {
         let time = times[orbit] + signed(k);
-        let operands = orbits.operands[orbits.members[orbit][k]].iter();
-        operands
-            .map(|operand| {
-                let (of, place) = orbits.of_term[operand.term]?;
-                (component[of] == component[orbit]).then_some((of, time - times[of] - signed(place)))
-            })
-            .collect()
+        let operands = orbits.operands[orbits.members[orbit][k]];
+        [0, 1].map(|slot| {
+            let (of, place) = orbits.of_term[operands.get(slot)?.term]?;
+            (component[of] == component[orbit]).then_some((of, time - times[of] - signed(place)))
+        })
     };
     let sources: Vec<_> = (0..orbits.members[orbit].len()).map(source).collect();
     let mut first = times[orbit];

@@ -3,6 +3,7 @@
 use super::colours::colours;
 use super::terms::{Kind, Operand, Place, Term, Terms, variable};
 use crate::expr::graph::{Graph, Node};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// How parts are found.
@@ -26,40 +27,62 @@ pub struct Shift {
 /// So many operations for each one that is computed twice: the verifier allows twice as many.
 pub const OPERATIONS_A_COPY: usize = 100;
 
-/// A set of terms, of which the next one in order is found quickly.
-#[derive(Clone)]
-struct Open(Vec<u64>);
+/// A set of terms, of which the next one in order is found quickly: a bit for each, and one for each word of these that
+/// has any.
+struct Open {
+    bits: Vec<u64>,
+    words: Vec<u64>,
+}
 
 impl Open {
     fn all(n: usize) -> Self {
-        let mut all = Self(Vec::new());
+        let mut all = Self { bits: Vec::new(), words: Vec::new() };
         (0..n).for_each(|place| all.insert(place));
         all
     }
 
     fn insert(&mut self, place: Place) {
         let word = place / 64;
-        if word >= self.0.len() {
-            self.0.resize(word + 1, 0);
+        if word >= self.bits.len() {
+            self.bits.resize(word + 1, 0);
+            self.words.resize(word / 64 + 1, 0);
         }
-        self.0[word] |= 1 << (place % 64);
+        self.bits[word] |= 1 << (place % 64);
+        self.words[word / 64] |= 1 << (word % 64);
     }
 
     fn remove(&mut self, place: Place) {
-        self.0[place / 64] &= !(1 << (place % 64));
+        let word = place / 64;
+        self.bits[word] &= !(1 << (place % 64));
+        if self.bits[word] == 0 {
+            self.words[word / 64] &= !(1 << (word % 64));
+        }
     }
 
     /// The first of them that is not before a place.
     fn next(&self, place: Place) -> Option<Place> {
-        let first = self.0.get(place / 64)? & (u64::MAX << (place % 64));
-        let rest = self.0.iter().copied().enumerate().skip(place / 64 + 1);
-        let (word, bits) = [(place / 64, first)].into_iter().chain(rest).find(|&(_, bits)| bits != 0)?;
-        Some(64 * word + bits.trailing_zeros() as usize)
+        next_bit(&self.bits[..self.bits.len().min(place / 64 + 1)], place).or_else(|| {
+            let word = next_bit(&self.words, place / 64 + 1)?;
+            next_bit(&self.bits, 64 * word)
+        })
+    }
+
+    /// All of them, in order.
+    fn places(&self) -> Vec<Place> {
+        std::iter::successors(self.next(0), |place| self.next(place + 1)).collect()
     }
 }
 
-struct Search {
-    terms: Terms,
+/// The first bit that is set and not before a place.
+fn next_bit(words: &[u64], place: usize) -> Option<usize> {
+    let first = words.get(place / 64)? & (u64::MAX << (place % 64));
+    let rest = words.iter().copied().enumerate().skip(place / 64 + 1);
+    let (word, bits) = [(place / 64, first)].into_iter().chain(rest).find(|&(_, bits)| bits != 0)?;
+    Some(64 * word + bits.trailing_zeros() as usize)
+}
+
+struct Search<'t> {
+    terms: Cow<'t, Terms>,
     colours: Vec<u64>,
     shift: Shift,
     /// Terms around which something has changed since they were looked at.
@@ -67,21 +90,24 @@ struct Search {
     /// Of which term each is a copy: most of themselves.
     originals: Vec<Place>,
     most_terms: usize,
+    /// Room for users of a term and of its counterpart.
+    only_ones: [Vec<((Kind, u64), Place)>; 2],
 }
 
 impl Shift {
     /// Starts from variables of one colour, in their order: to each corresponds the one so many places after it. What
     /// serves two terms in one part and has a counterpart for each in another is copied: the terms, with the copies.
-    pub fn find(graph: &Graph, terms: &Terms, way: Way) -> (Terms, Self) {
+    pub fn find<'t>(graph: &Graph, terms: &'t Terms, way: Way) -> (Cow<'t, Terms>, Self) {
         let Way { n_steps, stride, copies } = way;
         let n = terms.all.len();
         let mut search = Search {
-            terms: terms.clone(),
+            terms: Cow::Borrowed(terms),
             colours: colours(terms, n_steps),
             shift: Self { next: vec![None; n], previous: vec![None; n] },
             open: Open::all(n),
             originals: (0..n).collect(),
             most_terms: n + n / OPERATIONS_A_COPY,
+            only_ones: [Vec::new(), Vec::new()],
         };
         let mut classes: BTreeMap<(Kind, u64), Vec<(usize, Place)>> = BTreeMap::new();
         for (place, term) in terms.all.iter().enumerate() {
@@ -106,7 +132,7 @@ impl Shift {
     }
 }
 
-impl Search {
+impl<'t> Search<'t> {
     fn pair(&mut self, one: Place, other: Place) {
         let Shift { next, previous } = &mut self.shift;
         let is_free = next[one].is_none() && previous[other].is_none();
@@ -148,9 +174,9 @@ impl Search {
     /// A pair that was chosen, and what follows from it.
     fn choose(&mut self, one: Place, other: Place) {
         self.pair(one, other);
-        let open = self.open.clone();
+        let open = self.open.places();
         self.spread(true);
-        self.open = open;
+        open.into_iter().for_each(|place| self.open.insert(place));
         self.spread(false);
     }
 
@@ -231,7 +257,7 @@ impl Search {
     fn do_the_same(&self, one: Place, other: Place) -> bool {
         let [a, b] = [one, other].map(|place| &self.terms.all[place]);
         let known = |a: &Operand, b: &Operand| self.is_known(a.term, b.term);
-        let straight = || a.operands.iter().zip(&b.operands).all(|(a, b)| known(a, b));
+        let straight = || a.operands.iter().zip(&*b.operands).all(|(a, b)| known(a, b));
         let crossed = || a.operands.iter().zip(b.operands.iter().rev()).all(|(a, b)| known(a, b));
         a.kind == b.kind && a.kind.is_operation() && (straight() || a.kind.is_commutative() && crossed())
     }
@@ -239,21 +265,23 @@ impl Search {
     /// A copy of a term for one of its users, if there are others and not too many copies.
     fn copy(&mut self, term: Place, user: Place) -> Option<Place> {
         let copy = self.terms.all.len();
-        let original = &mut self.terms.all[term];
+        let original = &self.terms.all[term];
         if copy == self.most_terms || original.users.len() == 1 && !original.is_root {
             return None;
         }
+        let all = &mut self.terms.to_mut().all;
+        let original = &mut all[term];
         original.users.retain(|&other| other != user);
         let copied = Term { users: vec![user], is_root: false, ..original.clone() };
-        for operand in &copied.operands {
-            let users = &mut self.terms.all[operand.term].users;
+        for operand in copied.operands.iter() {
+            let users = &mut all[operand.term].users;
             if users.last() != Some(&copy) {
                 users.push(copy);
             }
         }
-        let of_user = self.terms.all[user].operands.iter_mut();
+        let of_user = all[user].operands.iter_mut();
         of_user.filter(|operand| operand.term == term).for_each(|operand| operand.term = copy);
-        self.terms.all.push(copied);
+        all.push(copied);
         self.colours.push(self.colours[term]);
         self.originals.push(self.originals[term]);
         self.shift.next.push(None);
@@ -263,7 +291,10 @@ impl Search {
     }
 
     /// Puts copies beside their originals: operands come before their users again.
-    fn sorted(self) -> (Terms, Shift) {
+    fn sorted(self) -> (Cow<'t, Terms>, Shift) {
+        if let Cow::Borrowed(_) = self.terms {
+            return (self.terms, self.shift);
+        }
         let mut order: Vec<Place> = (0..self.terms.all.len()).collect();
         order.sort_by_key(|&place| (self.originals[place], place));
         let mut places = vec![0; order.len()];
@@ -278,7 +309,7 @@ impl Search {
         let terms = Terms { all: all.collect(), roots: self.terms.roots.iter().map(moved).collect() };
         let map = |of: &[Option<Place>]| order.iter().map(|&p| of[p].map(|q| places[q])).collect();
         let shift = Shift { next: map(&self.shift.next), previous: map(&self.shift.previous) };
-        (terms, shift)
+        (Cow::Owned(terms), shift)
     }
 
     /// Whether terms may correspond as far as is known.
@@ -355,27 +386,29 @@ impl Search {
             }
             let kind = self.terms.all[user].kind;
             let Some(beside) = self.beside(user, one) else { continue };
-            let fits = |&&candidate: &&Place| {
-                self.terms.all[candidate].kind == kind
-                    && self.shift.previous[candidate].is_none()
-                    && self.beside(candidate, other).is_some_and(|b| self.is_known(beside, b))
+            let fits = |&candidate: &Place| {
+                self.terms.all[candidate].kind == kind && self.shift.previous[candidate].is_none()
             };
-            let mut found = self.terms.all[other].users.iter().filter(fits);
-            if let (Some(&candidate), None) = (found.next(), found.next()) {
+            let known = [Some(beside), self.shift.next[beside]].into_iter().flatten();
+            let mut found = known.flat_map(|beside| self.users_of_both(other, beside)).filter(fits);
+            let both = (found.next(), found.next());
+            drop(found);
+            if let (Some(candidate), None) = both {
                 self.pair(user, candidate);
             }
         }
         // What is the only one of its kind.
-        let ours = self.only_ones(one, by_colour, &self.shift.next);
-        if ours.is_empty() {
-            return;
+        let [mut ours, mut theirs] = std::mem::take(&mut self.only_ones);
+        self.only_ones(one, by_colour, &self.shift.next, &mut ours);
+        if !ours.is_empty() {
+            self.only_ones(other, by_colour, &self.shift.previous, &mut theirs);
         }
-        let theirs = self.only_ones(other, by_colour, &self.shift.previous);
-        for (key, a) in ours {
+        for &(key, a) in &ours {
             if let Ok(at) = theirs.binary_search_by_key(&key, |&(key, _)| key) {
                 self.pair(a, theirs[at].1);
             }
         }
+        self.only_ones = [ours, theirs];
     }
 
     /// The users of a term without a counterpart that are the only ones of their kind and colour, in the order of
@@ -385,16 +418,33 @@ impl Search {
         place: Place,
         by_colour: bool,
         counterparts: &[Option<Place>],
-    ) -> Vec<((Kind, u64), Place)> {
+        found: &mut Vec<((Kind, u64), Place)>,
+    ) {
         let is_open = |user: &&Place| counterparts[**user].is_none();
         let open = self.terms.all[place].users.iter().filter(is_open).map(|&user| {
             let colour = if by_colour { self.colours[user] } else { 0 };
             ((self.terms.all[user].kind, colour), user)
         });
-        let mut sorted: Vec<_> = open.collect();
-        sorted.sort_unstable();
-        let groups = sorted.chunk_by(|(one, _), (other, _)| one == other);
-        groups.filter(|group| group.len() == 1).map(|group| group[0]).collect()
+        found.clear();
+        found.extend(open);
+        found.sort_unstable();
+        let mut n = 0;
+        for at in 0..found.len() {
+            let key = found[at].0;
+            let is_first = at == 0 || found[at - 1].0 != key;
+            if is_first && found.get(at + 1).is_none_or(|next| next.0 != key) {
+                found[n] = found[at];
+                n += 1;
+            }
+        }
+        found.truncate(n);
+    }
+
+    /// The terms whose operands are these two.
+    fn users_of_both(&self, one: Place, other: Place) -> impl Iterator<Item = Place> {
+        let users = |place: Place| &self.terms.all[place].users;
+        let [few, many] = if users(one).len() <= users(other).len() { [one, other] } else { [other, one] };
+        users(few).iter().copied().filter(move |&user| self.beside(user, few) == Some(many))
     }
 
     /// The other operand of a term.

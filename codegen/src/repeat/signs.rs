@@ -23,7 +23,7 @@ struct Equations {
 #[derive(Debug)]
 pub struct Signs {
     /// Of terms that are computed in loops.
-    pub of_term: HashMap<Place, bool>,
+    pub of_term: Vec<bool>,
     /// Of rows that are filled outside of loops.
     pub of_row: HashMap<(usize, i64), bool>,
     /// Of the operands of orbits where they are not part of a product.
@@ -34,11 +34,10 @@ impl Signs {
     /// `None` if no formula serves all parts.
     pub fn solve(terms: &Terms, orbits: &Orbits, loops: &Loops, columns: &Columns) -> Option<Self> {
         let mut equations = Equations::default();
-        let mut of_term: HashMap<Place, Form> = HashMap::default();
+        let mut of_term: Vec<Option<Form>> = vec![None; terms.all.len()];
         let mut of_row: HashMap<(usize, i64), Form> = HashMap::default();
         let mut of_operand: HashMap<(Orbit, usize), Form> = HashMap::default();
         for index in 0..loops.all.len() {
-            equations.compress();
             for (k, part) in loops.parts(index).into_iter().enumerate() {
                 let is_first = k == 0;
                 let members = loops.all[index].orbits.iter();
@@ -49,11 +48,11 @@ impl Signs {
                     let mut given = Vec::new();
                     for (operand, source) in orbits.operands[term].iter().zip(&columns.sources[&orbit]) {
                         let mut form = match source {
-                            Source::Local(_) => of_term.get(&operand.term)?.clone(),
+                            Source::Local(_) => of_term[operand.term].clone()?,
                             Source::Row { column, offset } => {
                                 let row = part + offset;
                                 if columns.is_computed(loops, orbits, *column, row) {
-                                    of_term.get(&operand.term)?.clone()
+                                    of_term[operand.term].clone()?
                                 } else {
                                     let fresh = || equations.unknown();
                                     of_row.entry((*column, row)).or_insert_with(fresh).clone()
@@ -62,12 +61,12 @@ impl Signs {
                             Source::Element { .. } | Source::Same(_) => (Vec::new(), false),
                         };
                         form.1 ^= operand.is_negative;
-                        given.push(equations.reduced(&form));
+                        given.push(equations.reduced(form));
                     }
                     // What the first part has, all have: an orbit and its opposite serve equally well.
                     let mut operand = |slot: usize| {
                         let form = of_operand.entry((orbit, slot)).or_insert_with(|| given[slot].clone());
-                        *form = equations.reduced(form);
+                        *form = equations.reduced(std::mem::take(form));
                         form.clone()
                     };
                     let form = match terms.all[term].kind {
@@ -94,15 +93,15 @@ impl Signs {
                         }
                         Kind::Variable { .. } | Kind::Constant => return None,
                     };
-                    let form = equations.reduced(&form);
-                    of_term.insert(term, form);
+                    let form = equations.reduced(form);
+                    of_term[term] = Some(form);
                 }
             }
         }
         let values = equations.values();
         let value = |form: &Form| sum(&values, form);
         Some(Self {
-            of_term: of_term.iter().map(|(&key, form)| (key, value(form))).collect(),
+            of_term: of_term.iter().map(|form| form.as_ref().is_some_and(value)).collect(),
             of_row: of_row.iter().map(|(&key, form)| (key, value(form))).collect(),
             of_operand: of_operand.iter().map(|(&key, form)| (key, value(form))).collect(),
         })
@@ -138,27 +137,56 @@ impl Equations {
     }
 
     /// In terms of what is not solved for.
-    fn reduced(&self, form: &Form) -> Form {
-        let mut form = form.clone();
-        let mut from = 0;
-        while let Some(at) = form.0[from..].iter().position(|&unknown| self.solved[unknown].is_some()) {
-            from += at;
-            let known = self.solved[form.0.remove(from)].as_ref().expect("it is solved for");
-            let (before, after) = form.0.split_at(from);
-            // What an unknown is made of comes after it.
-            let (after, one) = plus(&(after.to_vec(), form.1), known);
-            form = ([before, &after].concat(), one);
+    fn reduced(&mut self, form: Form) -> Form {
+        if !self.knows_some(&form) {
+            return form;
         }
-        form
+        for &unknown in &form.0 {
+            self.settle(unknown);
+        }
+        self.substituted(&form)
     }
 
-    /// Writes what is solved for in terms of what is not.
-    fn compress(&mut self) {
-        for unknown in (0..self.solved.len()).rev() {
-            if let Some(form) = &self.solved[unknown] {
-                self.solved[unknown] = Some(self.reduced(form));
+    /// Writes an unknown that is solved for, and those on the way, in terms of what is not: none of them is gone
+    /// through again.
+    fn settle(&mut self, unknown: usize) {
+        let mut open = vec![unknown];
+        while let Some(&unknown) = open.last() {
+            let Some(form) = &self.solved[unknown] else { return };
+            let is_open =
+                |&&inner: &&usize| self.solved[inner].as_ref().is_some_and(|form| self.knows_some(form));
+            if let Some(&inner) = form.0.iter().find(is_open) {
+                open.push(inner);
+                continue;
+            }
+            if self.knows_some(form) {
+                self.solved[unknown] = Some(self.substituted(form));
+            }
+            open.pop();
+        }
+    }
+
+    /// Whether some of a form is solved for.
+    fn knows_some(&self, form: &Form) -> bool {
+        form.0.iter().any(|&unknown| self.solved[unknown].is_some())
+    }
+
+    /// With what is solved for replaced, once.
+    fn substituted(&self, form: &Form) -> Form {
+        let (mut all, mut one) = (Vec::with_capacity(form.0.len()), form.1);
+        for &unknown in &form.0 {
+            match &self.solved[unknown] {
+                Some(known) => {
+                    all.extend(&known.0);
+                    one ^= known.1;
+                }
+                None => all.push(unknown),
             }
         }
+        // A few runs that are in order each.
+        all.sort();
+        let odd = all.chunk_by(|a, b| a == b).filter(|same| same.len() % 2 == 1).map(|same| same[0]);
+        (odd.collect(), one)
     }
 
     /// The values of all unknowns; those that are not solved for are zero.
@@ -172,7 +200,7 @@ impl Equations {
 
     /// The oldest unknown yields: what comes later is then in terms of what is near.
     fn equate(&mut self, one: &Form, other: &Form) -> Option<()> {
-        let mut form = self.reduced(&plus(one, other));
+        let mut form = self.reduced(plus(one, other));
         if form.0.is_empty() {
             return (!form.1).then_some(());
         }

@@ -2,10 +2,12 @@
 //! or the constant of a sum is part of the term. Terms that differ in constants, signs and variables alone are then
 //! alike.
 
+use crate::expr::by_expr::ByExpr;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Uses;
 use crate::expr::symbol::Symbol;
-use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use rustc_hash::FxHashSet as HashSet;
+use std::ops::{Deref, DerefMut};
 
 /// Place of a term in [`Terms::all`].
 pub type Place = usize;
@@ -44,6 +46,11 @@ impl Kind {
         !matches!(self, Self::Variable { .. } | Self::Constant)
     }
 
+    /// Whether it is one of + − × ÷.
+    pub fn is_counted(self) -> bool {
+        self.is_operation() && !self.is_function() && self != Self::Root
+    }
+
     /// Whether it is a call of a function.
     pub fn is_function(self) -> bool {
         matches!(self, Self::Sine | Self::Cosine | Self::HyperbolicTangent | Self::Angle)
@@ -57,11 +64,43 @@ pub struct Operand {
     pub is_negative: bool,
 }
 
+/// The operands of a term, in place: no operation has more than two.
+#[derive(Clone, Copy, Debug)]
+pub struct Operands {
+    both: [Operand; 2],
+    n: usize,
+}
+
+impl Deref for Operands {
+    type Target = [Operand];
+
+    fn deref(&self) -> &[Operand] {
+        &self.both[..self.n]
+    }
+}
+
+impl DerefMut for Operands {
+    fn deref_mut(&mut self) -> &mut [Operand] {
+        &mut self.both[..self.n]
+    }
+}
+
+impl FromIterator<Operand> for Operands {
+    fn from_iter<I: IntoIterator<Item = Operand>>(operands: I) -> Self {
+        let mut all = Self { both: [Operand { term: 0, is_negative: false }; 2], n: 0 };
+        for operand in operands {
+            all.both[all.n] = operand;
+            all.n += 1;
+        }
+        all
+    }
+}
+
 #[derive(Clone, Debug)]
 pub struct Term {
     pub id: ExprId,
     pub kind: Kind,
-    pub operands: Vec<Operand>,
+    pub operands: Operands,
     /// The constant of [`Kind::Scaled`], [`Kind::Shifted`] and [`Kind::Constant`].
     pub constant: Option<ExprId>,
     pub users: Vec<Place>,
@@ -78,14 +117,14 @@ pub struct Terms {
 impl Terms {
     pub fn of(graph: &Graph, roots: &[ExprId]) -> Self {
         let uses = Uses::count(graph, roots);
-        let mut places: HashMap<ExprId, Operand> = HashMap::default();
+        let mut places: ByExpr<Operand> = ByExpr::default();
         let mut terms = Self { all: Vec::new(), roots: Vec::new() };
         let quotients = reciprocals_of_quotients(graph, &uses);
         for &id in &uses.order {
             let operand = match graph.node(id) {
                 // Part of a quotient.
                 Node::Recip(_) if quotients.contains(&id) => continue,
-                Node::Neg(a) => Operand { is_negative: !places[a].is_negative, ..places[a] },
+                Node::Neg(a) => Operand { is_negative: !places[*a].is_negative, ..places[*a] },
                 node => {
                     let term = terms.term(graph, (id, node), &uses, &places);
                     Operand { term, is_negative: false }
@@ -93,7 +132,7 @@ impl Terms {
             };
             places.insert(id, operand);
         }
-        terms.roots = roots.iter().map(|root| places[root]).collect();
+        terms.roots = roots.iter().map(|root| places[*root]).collect();
         for root in terms.roots.clone() {
             terms.all[root.term].is_root = true;
         }
@@ -105,7 +144,7 @@ impl Terms {
         graph: &Graph,
         (id, node): (ExprId, &Node),
         uses: &Uses,
-        places: &HashMap<ExprId, Operand>,
+        places: &ByExpr<Operand>,
     ) -> Place {
         let is_constant = |id: &ExprId| graph.as_constant(*id).is_some();
         let (kind, constant) = match node {
@@ -135,12 +174,12 @@ impl Terms {
         };
         let place = self.all.len();
         let absorbed = |operand: &ExprId| kind.is_operation() && Some(*operand) == constant;
-        let operands: Vec<_> = match node {
+        let operands: Operands = match node {
             Node::Mul(a, b) if kind == Kind::Quotient => {
                 let (above, below) = uses.quotient(graph, *a, *b).expect("it is a quotient");
-                vec![places[&above], places[&below]]
+                [above, below].into_iter().map(|id| places[id]).collect()
             }
-            _ => node.operands().filter(|o| !absorbed(o)).map(|operand| places[&operand]).collect(),
+            _ => node.operands().filter(|o| !absorbed(o)).map(|operand| places[operand]).collect(),
         };
         for (slot, operand) in operands.iter().enumerate() {
             // The factors of a square have one user.

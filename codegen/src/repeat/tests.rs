@@ -144,7 +144,8 @@ fn check(page: &str, wanted: &[Kernel]) -> Vec<(usize, usize)> {
         let roots = kernels.roots(kernel);
         let straight = Operations::count(graph, roots).total();
         let is_long = straight >= 500;
-        let found = is_long.then(|| rolled_by(&WAYS, straight.div_ceil(2), (graph, roots), &element));
+        let found =
+            is_long.then(|| rolled_by(&WAYS, (straight, straight.div_ceil(2)), (graph, roots), &element));
         let Some(rolled) = found.flatten() else {
             return (straight, straight);
         };
@@ -222,7 +223,8 @@ fn orbits(copies: bool, part: impl Fn(&mut Graph, [ExprId; 2], usize) -> Vec<Exp
     let padding = (0..1000).fold(time, |sum, _| graph.sin(sum));
     roots.push(padding);
     let way = Way { n_steps: 2, stride: 1, copies };
-    let (terms, shift) = &Shift::find(&graph, &Terms::of(&graph, &roots), way);
+    let terms = &Terms::of(&graph, &roots);
+    let (terms, shift) = &Shift::find(&graph, terms, way);
     Orbits::of(terms, shift, LEAST_PARTS).members.iter().map(Vec::len).filter(|&n| n <= PARTS).collect()
 }
 

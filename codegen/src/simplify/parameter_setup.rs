@@ -4,6 +4,7 @@
 //! products and sums, `p (q x + y r)` to `(p q) x + (p r) y`, wherever that saves an operation. Then the largest such
 //! expressions become numbers that the mechanism carries, [`Symbol::ParameterSetup`].
 
+use crate::expr::by_expr::ByExpr;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Uses;
 use crate::expr::symbol::Symbol;
@@ -15,7 +16,7 @@ pub fn separate<'r>(
     graph: &mut Graph,
     functions: impl IntoIterator<Item = &'r mut Vec<ExprId>>,
 ) -> Vec<ExprId> {
-    let mut setup = Setup { graph, places: HashMap::default(), values: Vec::new(), memo: HashMap::default() };
+    let mut setup = Setup { graph, places: HashMap::default(), values: Vec::new(), memo: ByExpr::default() };
     for roots in functions {
         if setup.graph.reachable(roots).iter().any(|&id| setup.graph.is_settled(id)) {
             *roots = Gathering::of(setup.graph, roots);
@@ -29,18 +30,18 @@ pub fn separate<'r>(
 struct Gathering<'g> {
     graph: &'g mut Graph,
     uses: Uses,
-    memo: HashMap<ExprId, ExprId>,
+    memo: ByExpr<ExprId>,
 }
 
 impl<'g> Gathering<'g> {
     fn of(graph: &'g mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
         let uses = Uses::count(graph, roots);
-        let mut gathering = Self { graph, uses, memo: HashMap::default() };
+        let mut gathering = Self { graph, uses, memo: ByExpr::default() };
         for id in gathering.uses.order.clone() {
             let gathered = gathering.gathered(id);
             gathering.memo.insert(id, gathered);
         }
-        roots.iter().map(|root| gathering.memo[root]).collect()
+        roots.iter().map(|root| gathering.memo[*root]).collect()
     }
 
     /// Whether it costs nothing in a step to multiply by it.
@@ -63,7 +64,7 @@ impl<'g> Gathering<'g> {
         match self.split(id) {
             Some((factor, rest)) if self.absorbs(rest) => self.scaled(factor, rest),
             _ => {
-                let node = self.graph.node(id).with_operands(|operand| self.memo[&operand]);
+                let node = self.graph.node(id).with_operands(|operand| self.memo[operand]);
                 self.graph.rebuilt(node)
             }
         }
@@ -90,7 +91,7 @@ impl<'g> Gathering<'g> {
         let absorbs = self.absorbs(id);
         match *self.graph.node(id) {
             _ if !absorbs || self.is_factor(id) => {
-                let rest = self.memo[&id];
+                let rest = self.memo[id];
                 self.product(factor, rest)
             }
             Node::Neg(a) => {
@@ -108,7 +109,7 @@ impl<'g> Gathering<'g> {
                 }
                 None => {
                     let (taking, other) = if self.absorbs(a) { (a, b) } else { (b, a) };
-                    let (scaled, other) = (self.scaled(factor, taking), self.memo[&other]);
+                    let (scaled, other) = (self.scaled(factor, taking), self.memo[other]);
                     self.graph.mul(scaled, other)
                 }
             },
@@ -133,15 +134,14 @@ struct Setup<'g> {
     graph: &'g mut Graph,
     places: HashMap<ExprId, usize>,
     values: Vec<ExprId>,
-    memo: HashMap<ExprId, ExprId>,
+    memo: ByExpr<ExprId>,
 }
 
 impl Setup<'_> {
     /// The expression with numbers in place of what depends on parameters alone.
     fn without(&mut self, root: ExprId) -> ExprId {
-        for id in self
-            .graph
-            .reachable_beyond(&[root], |id| self.graph.is_settled(id) || self.memo.contains_key(&id))
+        for id in
+            self.graph.reachable_beyond(&[root], |id| self.graph.is_settled(id) || self.memo.contains(id))
         {
             let operands: Vec<_> = self.graph.node(id).operands().collect();
             let operands = operands.into_iter().map(|operand| (operand, self.value(operand)));
@@ -155,7 +155,7 @@ impl Setup<'_> {
 
     fn value(&mut self, id: ExprId) -> ExprId {
         if !self.graph.is_settled(id) {
-            return self.memo[&id];
+            return self.memo[id];
         }
         match *self.graph.node(id) {
             Node::Symbol(_) => id,

@@ -1,5 +1,6 @@
 //! Products of a constant and two numbers, `k (x y)` and `k (x z)`, share a factor as `(k x) y` and `(k x) z`.
 
+use crate::expr::by_expr::ByExpr;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::{Operations, Uses};
 use rustc_hash::FxHashMap as HashMap;
@@ -8,6 +9,9 @@ use std::collections::BTreeMap;
 /// The roots, or what is shorter.
 pub fn reassociated(graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
     let better = written(graph, roots);
+    if better == roots {
+        return better;
+    }
     let [now, then] = [roots, &better].map(|roots| Operations::recurring(graph, roots).total());
     if then < now { better } else { roots.to_vec() }
 }
@@ -18,19 +22,19 @@ fn written(graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
     if shared.is_empty() {
         return roots.to_vec();
     }
-    let mut memo = HashMap::default();
+    let mut memo = ByExpr::default();
     for &id in &uses.order {
-        let node = graph.node(id).with_operands(|operand| memo[&operand]);
+        let node = graph.node(id).with_operands(|operand| memo[operand]);
         let value = match shared.get(&id) {
             Some(&(constant, factor, other)) => {
-                let scaled = graph.mul(constant, memo[&factor]);
-                graph.mul(scaled, memo[&other])
+                let scaled = graph.mul(constant, memo[factor]);
+                graph.mul(scaled, memo[other])
             }
             None => graph.rebuilt(node),
         };
         memo.insert(id, value);
     }
-    roots.iter().map(|root| memo[root]).collect()
+    roots.iter().map(|root| memo[*root]).collect()
 }
 
 /// Of each product that is to be written otherwise its constant, the factor that goes with the constant, and the other.

@@ -3,6 +3,7 @@
 //! result is what a good choice of units achieves by hand: with the moments of one body as unit of inertia, or an arm
 //! as unit of length, most constants become one.
 
+use crate::expr::by_expr::ByExpr;
 use crate::expr::constant::Constant;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::{Operations, Uses};
@@ -36,13 +37,13 @@ enum Tie {
 
 fn written(graph: &mut Graph, roots: &[ExprId], tie: Tie) -> Vec<ExprId> {
     let uses = Uses::count(graph, roots);
-    let mut scales = Scales { graph, uses, tie, known: HashMap::default() };
+    let mut scales = Scales { graph, uses, tie, known: ByExpr::default() };
     for id in scales.uses.order.clone() {
         let value = scales.of(id);
         scales.known.insert(id, value);
     }
     let known = scales.known;
-    roots.iter().map(|root| graph.scale(&known[root].0, known[root].1)).collect()
+    roots.iter().map(|root| graph.scale(&known[*root].0, known[*root].1)).collect()
 }
 
 struct Scales<'g> {
@@ -50,7 +51,7 @@ struct Scales<'g> {
     uses: Uses,
     tie: Tie,
     /// Of each expression its factor and the rest.
-    known: HashMap<ExprId, (Constant, ExprId)>,
+    known: ByExpr<(Constant, ExprId)>,
 }
 
 impl Scales<'_> {
@@ -60,16 +61,16 @@ impl Scales<'_> {
             Node::Constant(value) => (value, Graph::ONE),
             Node::Symbol(_) => (Constant::integer(1), id),
             Node::Neg(a) => {
-                let (c, x) = self.known[&a].clone();
+                let (c, x) = self.known[a].clone();
                 (c.neg(), x)
             }
             Node::Mul(a, b) => {
-                let ((c, x), (d, y)) = (self.known[&a].clone(), self.known[&b].clone());
+                let ((c, x), (d, y)) = (self.known[a].clone(), self.known[b].clone());
                 let product = self.graph.mul(x, y);
                 self.with_factor(&c.mul(&d), product)
             }
             Node::Recip(a) => {
-                let (c, x) = self.known[&a].clone();
+                let (c, x) = self.known[a].clone();
                 let inverse = self.graph.recip(x);
                 match c.recip() {
                     Some(c) => self.with_factor(&c, inverse),
@@ -79,9 +80,7 @@ impl Scales<'_> {
             Node::Add(..) => self.sum(id),
             _ => {
                 let operands: HashMap<_, _> = (node.operands())
-                    .map(|operand| {
-                        (operand, self.graph.scale(&self.known[&operand].0, self.known[&operand].1))
-                    })
+                    .map(|operand| (operand, self.graph.scale(&self.known[operand].0, self.known[operand].1)))
                     .collect();
                 let node = node.with_operands(|operand| operands[&operand]);
                 (Constant::integer(1), self.graph.rebuilt(node))
@@ -128,16 +127,17 @@ impl Scales<'_> {
                 self.terms(a, false, terms);
                 terms[first..].iter_mut().for_each(|(c, _)| *c = c.neg());
             }
-            _ => terms.push(self.known[&id].clone()),
+            _ => terms.push(self.known[id].clone()),
         }
     }
 
     /// The factor that most terms have.
     fn factor(&self, terms: &[(Constant, ExprId)]) -> Constant {
         let factors: Vec<_> = terms.iter().filter(|(_, x)| *x != Graph::ONE).map(|(c, _)| c.abs()).collect();
-        let often = |c: &Constant| factors.iter().filter(|other| *other == c).count();
-        let most = factors.iter().map(often).max().unwrap_or(0);
-        let mut candidates: Vec<_> = factors.iter().filter(|c| often(c) == most).collect();
+        let mut often: HashMap<&Constant, usize> = HashMap::default();
+        factors.iter().for_each(|c| *often.entry(c).or_default() += 1);
+        let most = often.values().copied().max().unwrap_or(0);
+        let mut candidates: Vec<_> = factors.iter().filter(|c| often[c] == most).collect();
         match self.tie {
             Tie::One if candidates.iter().any(|c| c.is_one()) => candidates.retain(|c| c.is_one()),
             Tie::Last => candidates.reverse(),

@@ -209,7 +209,7 @@ impl Block {
     /// about that axis is the independent velocity, and a large spin takes no part in the rounding.
     fn constrained_spin(&self, system: &mut System, kinematics: &Kinematics, solved: &Values) -> Vec3 {
         let directions = self.directions(system, kinematics);
-        let mut expansion = Expansion::with_values(&system.definitions, solved.clone());
+        let mut expansion = Expansion::at(&system.definitions, solved);
         let mut w = system.poses[system.moving_bodies[self.moving_body]].w;
         for (row, direction) in self.subspace.rows.clone().skip(3).zip(directions) {
             let residual = expansion.of(&mut system.graph, kinematics.velocity_residual[row]);
@@ -235,7 +235,7 @@ impl Block {
 
     /// The joint's point rows of Φ or Φ̇ at the given values, with the sign that this body's own r or s has in them.
     fn point_rows(&self, system: &mut System, rows: &[ExprId], values: &Values) -> Vec3 {
-        let mut expansion = Expansion::with_values(&system.definitions, values.clone());
+        let mut expansion = Expansion::at(&system.definitions, values);
         let rows = from_fn(|k| expansion.of(&mut system.graph, rows[self.subspace.rows.start + k]));
         let reversed = matches!(self.attachment, Attachment::Joint { reversed: true, .. });
         if reversed { system.graph.neg_vec(&rows) } else { rows }

@@ -1,12 +1,13 @@
 //! From expressions to tapes.
 
 use super::{Exact, Kernel, Loop, Operation, Place, Tape};
+use crate::expr::by_expr::ByExpr;
 use crate::expr::constant::Constant;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Program;
 use crate::expr::symbol::Symbol;
 use crate::repeat::{Before, Repeat, Rolled, Row};
-use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use rustc_hash::FxHashSet as HashSet;
 
 /// The tape of a kernel without loops.
 pub fn straight(graph: &Graph, roots: &[ExprId]) -> Kernel<Symbol, Constant> {
@@ -55,7 +56,7 @@ struct Builder<'g> {
     graph: &'g Graph,
     program: Program,
     operations: Vec<Operation<Symbol, Constant>>,
-    named: HashMap<ExprId, Place>,
+    named: ByExpr<Place>,
     has_name: HashSet<ExprId>,
 }
 
@@ -63,11 +64,11 @@ impl<'g> Builder<'g> {
     fn new(graph: &'g Graph, roots: &[ExprId]) -> Self {
         let program = Program::new(graph, roots);
         let has_name = program.temporaries.iter().copied().collect();
-        Self { graph, program, operations: Vec::new(), named: HashMap::default(), has_name }
+        Self { graph, program, operations: Vec::new(), named: ByExpr::default(), has_name }
     }
 
     fn tape(self) -> Exact {
-        let named = self.program.temporaries.iter().map(|id| self.named[id]).collect();
+        let named = self.program.temporaries.iter().map(|id| self.named[*id]).collect();
         Tape { operations: self.operations, named }
     }
 
@@ -113,7 +114,7 @@ impl<'g> Builder<'g> {
 
     /// What was computed before, or is computed where it is used.
     fn value(&mut self, id: ExprId) -> Place {
-        self.named.get(&id).copied().unwrap_or_else(|| self.operation(id))
+        self.named.get(id).copied().unwrap_or_else(|| self.operation(id))
     }
 
     fn operation(&mut self, id: ExprId) -> Place {

@@ -19,7 +19,7 @@ fn solved(model: &Model) -> (System<'_>, Coordinates, Vec<(String, Vec<ExprId>)>
     let textbook = Textbook::derive(&mut system);
     let coordinates = Coordinates::derive(&mut system, &textbook);
     let candidates = Candidates::solve(&mut system, &coordinates);
-    let forms = candidates.on_rates(&mut system, &coordinates.in_joints);
+    let forms = candidates.on_rates(&mut system, &coordinates);
     (system, coordinates, forms)
 }
 
