@@ -5,9 +5,9 @@
 //! [`JointSpace`]: unrolled, and of the size of what closes its loops rather than of Φ_q. A step takes the coordinates
 //! of the tree from the maximal state, closes loops by the smallest change of these, and places the bodies anew. Nothing
 //! else of the tree's coordinates changes; drivers are satisfied by construction, and so are the rows of all joints of
-//! the tree. As none of a loop's coordinates is preferred, there is no choice that could become a poor one. Angles of which
-//! the state counts the turns are independent themselves: who sets the pose of such a joint in a state by hand also
-//! sets its turn reference ([`refer_turns`](crate::refer_turns)). A generated mechanism calls these functions from its
+//! the tree. As none of a loop's coordinates is preferred, there is no choice that could become a poor one. Angles of
+//! which the state counts the turns are taken from their turn references: who turns such a joint in a state by hand also
+//! sets its reference ([`refer_turns`](crate::refer_turns)). A generated mechanism calls these functions from its
 //! [`Partition`](crate::Partition), one line each.
 //!
 //! # Example
@@ -74,14 +74,38 @@ pub fn clearance<M: JointSpace<Scalar: Real>>(
     CloseLoops::new(mechanism).clearance(mechanism, t, &joints(mechanism, t, y))
 }
 
-/// The joint state of a maximal state. Angles that have a turn reference are what that is: it is integrated as they are
-/// in joint coordinates, without the error of phase that a method makes in Euler parameters, and what gears and screws
-/// hand on needs its whole turns. All others are read off the poses, of one turn, where they have the most digits.
-fn joints<M: JointSpace>(mechanism: &M, t: M::Scalar, y: &M::State) -> M::Joints {
+/// An angle and its turn reference that differ by so many roundings of the latter are one.
+const ROUNDINGS: f64 = 16.0;
+
+/// The joint state of a maximal state. Angles that have a turn reference have its turns, and where the two differ by
+/// more than rounding they are what the reference is: it is integrated as angles are in joint coordinates, without the
+/// error of phase that a method makes in Euler parameters. All others are read off the poses, of one turn, where they
+/// have the most digits.
+fn joints<M: JointSpace<Scalar: Real>>(mechanism: &M, t: M::Scalar, y: &M::State) -> M::Joints {
     let mut x = mechanism.joint_start();
     x.as_mut().fill(M::Scalar::constant(0.0));
+    for_each_reference(mechanism, y, &mut x, |x, reference| *x = reference);
     mechanism.to_joints(t, y, &mut x);
+    let rounding = M::Scalar::EPSILON * M::Scalar::constant(ROUNDINGS);
+    for_each_reference(mechanism, y, &mut x, |x, reference| {
+        if (*x - reference).abs() > rounding * reference.abs() {
+            *x = reference;
+        }
+    });
+    x
+}
+
+/// Calls `f` with the angles of the tree that have a turn reference, and with that.
+fn for_each_reference<M: JointSpace>(
+    mechanism: &M,
+    y: &M::State,
+    x: &mut M::Joints,
+    f: impl Fn(&mut M::Scalar, M::Scalar),
+) {
     let description = mechanism.description();
+    if description.turn_references.is_empty() {
+        return;
+    }
     let first = references(mechanism, y);
     let mut place = 0;
     for of in mechanism.joint_layout().places {
@@ -90,11 +114,10 @@ fn joints<M: JointSpace>(mechanism: &M, t: M::Scalar, y: &M::State) -> M::Joints
             && let Some(turn) = description.turn_references.iter().position(|of| usize::from(*of) == reading)
             && let (Some(x), Some(reference)) = (x.as_mut().get_mut(place), y.as_ref().get(first + turn))
         {
-            *x = *reference;
+            f(x, *reference);
         }
         place += of.n_coordinates();
     }
-    x
 }
 
 /// Where the turn references begin in a state.

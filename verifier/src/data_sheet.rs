@@ -5,7 +5,7 @@
 use crate::module::{Module, frames, type_name};
 use crate::program::{Node, Operations, Program};
 use crate::refusal::Refusal;
-use gyro_model::{JointKind, Model, Number, Parameter, RowOwner, Support, to_f64};
+use gyro_model::{Model, Number, Parameter, RowOwner, Support, to_f64};
 use std::collections::BTreeSet;
 
 /// What a module says of one of its functions.
@@ -199,8 +199,6 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
     };
     let says =
         |what: &str| module.data_sheet.iter().any(|line| line.strip_prefix("* left out: ") == Some(what));
-    let has_screw = model.joints.iter().any(|joint| joint.kind == JointKind::Screw);
-    let through_joints = has_joints && model.couplers.is_empty() && !has_screw;
     let missing = [
         (!has_joints, said("joint coordinates", "joint coordinates (functions = [\"joint\"] asks for them)")),
         (
@@ -226,11 +224,11 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
         ),
         (lacks("Partition"), "the coordinate partition (functions = [\"partition\"] asks for it)"),
         (
-            module.implements("Partition") && module.n_charts.is_none() && !through_joints,
+            module.implements("Partition") && module.n_charts.is_none() && !has_joints,
             "charts (for trees of revolute, spherical and fixed joints: the run time pivots)",
         ),
         (
-            module.implements("Partition") && module.n_charts.is_none() && through_joints,
+            module.implements("Partition") && module.n_charts.is_none() && has_joints,
             "charts (for trees of revolute, spherical and fixed joints: the partition goes through joint coordinates)",
         ),
         (model.gravity.iter().all(Number::is_zero), "gravity"),

@@ -34,7 +34,7 @@ pub trait Correction<D: Ode<M>, M = ()> {
     /// # Errors
     /// [`Error`], with `y` as it was when the failure was noticed.
     fn correct(&mut self, model: &M, t: D::Scalar, y: &mut D::State) -> Result<(), Error>;
-    /// Sets the turn references of a state that is not due for a correction.
+    /// Keeps the turn references of a state that is not due for a correction near their angles.
     fn refer_turns(&mut self, _model: &M, _t: D::Scalar, _y: &mut D::State) {}
     /// The largest violation of a position constraint, lengths in units of the mechanism's size.
     fn violation(&mut self, model: &M, t: D::Scalar, y: &D::State) -> D::Scalar;

@@ -5,7 +5,7 @@ use gyro_codegen::{Effort, Functions, Group};
 use gyro_jit::{Independent, OnHeap};
 use gyro_model::Model;
 use gyro_sim::pivoting::{self, Choice};
-use gyro_sim::{CloseLoops, JointSpace, Mechanism, Partition, Partitioning, violation};
+use gyro_sim::{CloseLoops, JointSpace, Mechanism, Partition, Partitioning, refer_turns, violation};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -30,6 +30,7 @@ fn check(name: &str, model: &Model, seed: u64) -> bool {
     for x in y.iter_mut().take(13 * n_bodies) {
         *x += DRIFT * dice.random_range(-1.0..1.0);
     }
+    refer_turns(&mechanism, 0.0, &mut y);
     let drifted = y.clone();
     let mut partitioning = Partitioning::new(&mechanism, 0.0, &y);
     partitioning.correct(&mechanism, 0.0, &mut y).unwrap_or_else(|error| panic!("{name}: {error:?}"));

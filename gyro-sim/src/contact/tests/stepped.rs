@@ -4,6 +4,7 @@ use super::{Cart, Random, fine, random_cart};
 use crate::contact::resolve::{Hit, impulses};
 use crate::contact::{Contact, Forced, Hybrid, Phase, Stepped};
 use crate::{Dop853, Kutta4, Ode, Real};
+use core::cell::Cell;
 use core::ops::Range;
 
 const GRAVITY: f64 = 9.81;
@@ -255,4 +256,57 @@ fn a_contact_beyond_the_state_does_nothing() {
     let mut y = [1.0, 0.0];
     Stepped::new(Falling, [beyond], &y).advance(&(), 0.0, 0.125, 8, &mut y).unwrap();
     assert!((y[0] - 1.0 + 0.5 * GRAVITY).abs() < 1e-14 && (y[1] + GRAVITY).abs() < 1e-14, "{y:?}");
+}
+
+/// The cart, and how often its accelerations have been evaluated.
+#[derive(Clone)]
+struct Counted<'a>(Cart, &'a Cell<u32>);
+
+impl Ode for Counted<'_> {
+    type Scalar = f64;
+    type State = [f64; 4];
+
+    fn derivative(&self, model: &(), t: f64, y: &[f64; 4], dy: &mut [f64; 4]) {
+        self.1.set(self.1.get() + 1);
+        self.0.derivative(model, t, y, dy);
+    }
+}
+
+impl Forced for Counted<'_> {
+    fn rates(&self, model: &()) -> Range<usize> {
+        self.0.rates(model)
+    }
+
+    fn forced(&self, model: &(), t: f64, y: &[f64; 4], forces: &[f64], dy: &mut [f64; 4]) {
+        self.1.set(self.1.get() + 1);
+        self.0.forced(model, t, y, forces, dy);
+    }
+}
+
+#[test]
+fn a_step_evaluates_no_more_than_it_says() {
+    let mut random = Random(59);
+    let count = Cell::new(0);
+    let mut most = [[0; 2]; 3];
+    for _ in 0..100 {
+        let (cart, start) = random_cart(&mut random);
+        let contacts = contacts(&mut random);
+        let mut y = start;
+        let mut motion = Stepped::new(Counted(cart, &count), contacts, &y);
+        motion.advance(&(), 0.0, 1e-3, 1, &mut y).unwrap();
+        for step in 1..2000 {
+            count.set(0);
+            let before = (*motion.phases(), motion.record().impacts);
+            let n_held = motion.phases().iter().filter(|phase| phase.is_held()).count();
+            motion.advance(&(), f64::from(step) * 1e-3, 1e-3, 1, &mut y).unwrap();
+            let happened = before != (*motion.phases(), motion.record().impacts);
+            let most = &mut most[n_held][usize::from(happened)];
+            *most = count.get().max(*most);
+        }
+    }
+    let [free, held, both] = most;
+    assert_eq!([free[0], held[0], both[0]], [4, 9 + 5 * 2, 9 + 5 * 2], "two contacts");
+    let more = 4 + 4 * 2;
+    assert!(free[1] <= 4 + more && held[1].max(both[1]) <= 9 + 5 * 2 + more, "{most:?}");
+    assert!(free[1] > free[0] && held[1] > held[0], "something has happened: {most:?}");
 }
