@@ -3,12 +3,12 @@
 //!
 //! Where charts do not reach, a mechanism that has joint coordinates is partitioned in them, by the functions of its
 //! [`JointSpace`]: unrolled, and of the size of what closes its loops rather than of Φ_q. A step takes the coordinates
-//! of the tree from the maximal state, closes loops by the smallest change of these, and places the bodies anew. Nothing
-//! else of the tree's coordinates changes; drivers are satisfied by construction, and so are the rows of all joints of
-//! the tree. As none of a loop's coordinates is preferred, there is no choice that could become a poor one. Angles of
-//! which the state counts the turns are taken from their turn references: who turns such a joint in a state by hand also
-//! sets its reference ([`refer_turns`](crate::refer_turns)). A generated mechanism calls these functions from its
-//! [`Partition`](crate::Partition), one line each.
+//! of the tree from the maximal state, closes loops by the smallest change of these, and places the bodies anew.
+//! Nothing else of the tree's coordinates changes; drivers are satisfied by construction, and so are the rows of all
+//! joints of the tree. As none of a loop's coordinates is preferred, there is no choice that could become a poor one.
+//! Angles of which the state counts the turns are taken from their turn references: who turns such a joint in a state
+//! by hand also sets its reference ([`refer_turns`](crate::refer_turns)). A generated mechanism calls these functions
+//! from its [`Partition`](crate::Partition), one line each.
 //!
 //! # Example
 //! ```
