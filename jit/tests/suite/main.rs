@@ -7,3 +7,4 @@ mod kernels;
 mod pair;
 mod partition;
 mod proof;
+mod trains;
