@@ -40,12 +40,12 @@ const QUICKER: [(&str, &str, &str); 3] = [
 /// All faults. An expression that is mutated must not contain another one.
 const FAULTS: &[Fault] = &[
     // Rules of differentiation.
-    fault("expr/differentiate.rs", "bob", "«graph.mul(a, self.memo[&b])»);", "Graph::ZERO"),
-    fault("expr/differentiate.rs", "bob", "let (left, right) = («graph.mul(self.memo[&a], b)»,", "graph.mul(self.memo[&a], self.memo[&b])"),
-    fault("expr/differentiate.rs", "bob", "Node::Add(a, b) => «graph.add(self.memo[&a], self.memo[&b])»", "self.memo[&a]"),
-    fault("expr/differentiate.rs", "bob", "Node::Neg(a) => «graph.neg(self.memo[&a])»", "self.memo[&a]"),
+    fault("expr/differentiate.rs", "bob", "«graph.mul(a, self.memo[b])»);", "Graph::ZERO"),
+    fault("expr/differentiate.rs", "bob", "let (left, right) = («graph.mul(self.memo[a], b)»,", "graph.mul(self.memo[a], self.memo[b])"),
+    fault("expr/differentiate.rs", "bob", "Node::Add(a, b) => «graph.add(self.memo[a], self.memo[b])»", "self.memo[a]"),
+    fault("expr/differentiate.rs", "bob", "Node::Neg(a) => «graph.neg(self.memo[a])»", "self.memo[a]"),
     fault("expr/differentiate.rs", "chain", "let cos = «graph.cos(a)»;", "graph.sin(a)"),
-    fault("expr/differentiate.rs", "chain", "let product = graph.mul(sin, self.memo[&a]);\n                «graph.neg(product)»", "product"),
+    fault("expr/differentiate.rs", "chain", "let product = graph.mul(sin, self.memo[a]);\n                «graph.neg(product)»", "product"),
     fault("expr/differentiate.rs", "screw", "let turned = «graph.sub(plus, minus)»;", "graph.add(plus, minus)"),
     fault("expr/differentiate.rs", "screw", "let square = «graph.dot(&[x, y], &[x, y])»;\n    graph.div(turned", "graph.mul(x, x)"),
     fault("expr/differentiate.rs", "cam", "let slope = graph.symbol(Symbol::Table { table, order: «order + 1» });", "order"),
@@ -71,7 +71,7 @@ const FAULTS: &[Fault] = &[
     fault("expr/vector.rs", "chain", "== 1 {\n                    «self.sub(symmetric, skew)»", "self.add(symmetric, skew)"),
     fault("expr/vector.rs", "chain", "let shared = «self.sub(shared, Self::ONE)»;", "shared"),
     fault("simplify/reassociate.rs", "chain", "«if x == factor { y } else { x }»", "x"),
-    fault("simplify/reassociate.rs", "chain", "«graph.mul(constant, memo[&factor])»", "memo[&factor]"),
+    fault("simplify/reassociate.rs", "chain", "«graph.mul(constant, memo[factor])»", "memo[factor]"),
     fault("derive/system.rs", "bob", "let a_rate = «self.graph.mat_mul(&pose.a, &tilde)»;", "self.graph.mat_mul(&tilde, &pose.a)"),
     fault("derive/system.rs", "bob", "let square = «self.graph.mat_mul(&tilde, &tilde)»;", "[ZERO3; 3]"),
     fault("derive/system.rs", "pair", "let rate = «self.graph.sub_mat(&turned, &carried)»;", "turned"),
@@ -84,7 +84,7 @@ const FAULTS: &[Fault] = &[
     fault("expr/graph.rs", "bob", "            Node::Neg(a) => «self.neg(a)»,", "a"),
     fault("expr/definitions.rs", "pair", "(None, Some(definition)) => «self.of(graph, definition)»", "definition"),
     // What depends on parameters alone.
-    fault("simplify/parameter_setup.rs", "gyroscope-parameters", "(self.scaled(factor, a), «self.scaled(factor, b)»)", "self.memo[&b]"),
+    fault("simplify/parameter_setup.rs", "gyroscope-parameters", "(self.scaled(factor, a), «self.scaled(factor, b)»)", "self.memo[b]"),
     fault("simplify/parameter_setup.rs", "gyroscope-parameters", "let scaled = self.scaled(factor, a);\n                «self.graph.neg(scaled)»", "scaled"),
     fault("simplify/parameter_setup.rs", "gyroscope-parameters", "let factor = «self.graph.mul(factor, inner)»;", "inner"),
     fault("simplify/parameter_setup.rs", "gyroscope-parameters", "let value = self.value(a);\n                «self.graph.neg(value)»", "value"),
@@ -304,7 +304,7 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/maps.rs", "pair", "let (difference, sum) = («graph.sub(cosine, sine)», graph.add(cosine, sine));", "graph.sub(sine, cosine)"),
     // The last passes.
     fault("simplify/scales.rs", "pair", "let product = self.graph.mul(x, y);\n                self.with_factor(&«c.mul(&d)», product)", "c.clone()"),
-    fault("simplify/scales.rs", "pair", "let (c, x) = self.known[&a].clone();\n                («c.neg()», x)", "c"),
+    fault("simplify/scales.rs", "pair", "let (c, x) = self.known[a].clone();\n                («c.neg()», x)", "c"),
     fault("simplify/scales.rs", "bob", "let c = «c.mul(&inverse)»;", "c"),
     fault("simplify/scales.rs", "bob", "terms[first..].iter_mut().for_each(|(c, _)| *c = «c.neg()»);", "c.clone()"),
     fault("simplify/scales.rs", "bob", "total.map_or(constant, |total| «self.graph.add(total, constant)»)", "total"),
