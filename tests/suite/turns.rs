@@ -29,7 +29,7 @@ const RATE: f64 = 2.0;
 const TURNED: f64 = 1e-6;
 
 /// What the engines may differ by, which are on other independent coordinates: truncation of the steps in ten turns, at
-/// steps that are so many times finer. (At the others the twin is off by 9e-3 rad of a differential's wheel.)
+/// steps that are so many times finer. (At the others a wheel of the differential differs by 9e-3 rad.)
 const ENGINES: f64 = 1e-3;
 const FINER: f64 = 4.0;
 
