@@ -30,8 +30,8 @@ const TURNED: f64 = 1e-6;
 
 /// What the engines may differ by, which are on other independent coordinates: truncation of the steps in ten turns, at
 /// steps that are so many times finer. (At the others a wheel of the differential differs by 9e-3 rad.)
-const ENGINES: f64 = 1e-3;
-const FINER: f64 = 4.0;
+const ENGINES: f64 = 1e-4;
+const FINER: f64 = 6.0;
 
 /// The same in single precision, in which an angle of 1e5 rad is known to 0.008 rad.
 const TURNED_F32: f64 = 0.3;

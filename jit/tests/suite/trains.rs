@@ -5,10 +5,12 @@ use gyro_codegen::{Effort, Functions};
 use gyro_jit::OnHeap;
 use gyro_sim::pivoting::{self, Choice};
 use gyro_sim::{
-    Control, Corrected, Dop853, Joint, JointSpace, Mechanism, Partitioned, Rk4, Solver, refer_turns,
+    Control, Corrected, Dop853, Joint, JointSpace, Mechanism, Partitioned, Rk4, Solver, keep_turns,
+    refer_turns,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 const T_END: f64 = 0.5;
@@ -135,4 +137,23 @@ fn trains_are_as_exact_as_by_pivoting() {
         n_far_better += u32::from(theirs > 1e-10 && theirs > 100.0 * ours);
     }
     assert!(n_far_better > 1, "{n_far_better}");
+}
+
+/// Between corrections references stay what integration makes of them, as long as no turn is in danger.
+#[test]
+fn references_that_stray_far_are_brought_back() {
+    let text = std::fs::read_to_string("../tests/models/gear-pair.toml").unwrap();
+    let model = gyro_model::read("gear-pair", &text).unwrap();
+    let train = gyro_jit::compile::<f64>(&model, &Functions::all(), Effort::Quick).expect("a mechanism");
+    let start = train.start();
+    let [first, second] = [start.len() - 2, start.len() - 1];
+    for turns in [-3.0, 0.0, 1e4] {
+        let mut y = start.clone();
+        let angle = start[first] + turns * TAU;
+        (y[first], y[second]) = (angle + 1.5, start[second] - 1.6);
+        keep_turns(&train, 0.0, &mut y);
+        assert_eq!(y[first], angle + 1.5, "less than a quarter of a turn");
+        assert!((y[second] - start[second]).abs() < 1e-14, "more: {} {}", y[second], start[second]);
+        assert_eq!(y[..first], start[..first]);
+    }
 }
