@@ -324,6 +324,6 @@ pub fn verify(file: &str, model: &Model, depth: Depth) -> Result<(bool, String, 
 /// # Errors
 /// It cannot be assembled.
 pub fn start(file: &str, model: &Model) -> Result<Start, Failure> {
-    let assembled = model.assemble().map_err(|e| Failure::Usage(format!("{file}: {e}")))?;
+    let assembled = model.assemble().map_err(|e| Failure::Usage(format!("{file}: {e}: {}", e.help())))?;
     Ok(scene::start(model, &assembled))
 }

@@ -64,8 +64,9 @@ impl Scene {
         if let Some(words) = refusal(&offers, &settings, &approach, args) {
             return Err(Failure::Usage(words));
         }
-        let assembled =
-            model.assemble().map_err(|e| Failure::Usage(format!("{}: {e}", args.model.display())))?;
+        let assembled = model
+            .assemble()
+            .map_err(|e| Failure::Usage(format!("{}: {e}: {}", args.model.display(), e.help())))?;
         let start = Start { inputs, ..start(&model, &assembled) };
         let moved = assembled.moved;
         Ok(Self {

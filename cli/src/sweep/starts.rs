@@ -61,7 +61,7 @@ fn hanging(model: &Model, joint: usize) -> Option<usize> {
 /// Why it cannot.
 pub(super) fn assembled(page: &Model, targets: &[Target], values: &[f64]) -> Result<Start, String> {
     let model = model(page, targets, values)?;
-    let assembled = model.assemble().map_err(|error| error.to_string())?;
+    let assembled = model.assemble().map_err(|error| format!("{error}: {}", error.help()))?;
     // Nobody hears of events.
     Ok(Start { watches: Vec::new(), ..start(&model, &assembled) })
 }

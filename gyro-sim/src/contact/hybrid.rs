@@ -226,12 +226,13 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
             self.ledger.stalled = 0;
             return Ok(false);
         };
+        self.end_at(model, h, &next)?;
+        let next = self.before(model, next)?;
         self.ledger.stalled = if next.theta > T::constant(0.0) { 0 } else { self.ledger.stalled + 1 };
         if self.ledger.stalled > MOST_STALLED {
             let t = self.mark.time().to_f64();
             return Err(crate::Error::StepTooShort { t, step: 0.0, index: 0 }.into());
         }
-        self.end_at(model, h, &next)?;
         self.pending = Some(Pending::Event(next, h));
         Ok(true)
     }
@@ -416,6 +417,35 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
             }
         }
         Ok(first)
+    }
+
+    /// The event at which the step has been ended, or one before it: a step that was taken again is more exact than what
+    /// was interpolated, and may have gone through another stop.
+    fn before<M>(&mut self, model: &M, mut next: Next<T>) -> Result<Next<T>, Error>
+    where
+        D: Forced<M, Scalar = T, State = S>,
+        A: Method<Contacts<D, T, N>, M>,
+        C: Correction<D, M>,
+    {
+        for _ in 0..N {
+            let Contacts { contacts, phases, .. } = *self.solver.dynamics();
+            let Guards(guards) = self.guards(model);
+            let zero = T::constant(0.0);
+            let is_passed = |kind: usize, k: usize| {
+                let is_own = (kind, k) == (next.kind, next.contact);
+                !is_own && !phases[k].is_held() && guards[kind][k] < -noise(&contacts[k], kind, zero)
+            };
+            let is_any = (0..2).any(|kind| (0..N).any(|k| is_passed(kind, k)));
+            let h = self.solver.last_step();
+            match if is_any && next.theta > zero { self.find(model)? } else { None } {
+                Some(earlier) if (earlier.kind, earlier.contact) != (next.kind, next.contact) => {
+                    self.end_at(model, h, &earlier)?;
+                    next = earlier;
+                }
+                _ => break,
+            }
+        }
+        Ok(next)
     }
 
     /// Takes the last step again, up to an event: by the method, whose states are better than what it interpolates.

@@ -135,8 +135,9 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         self.collide(equations, (model, t), y, &hits, scratch);
         let chosen = equations.choose(model, (t, y), &reached, &mut scratch[0]);
         self.note(&phases, &equations.phases, |k| {
-            let is_hit = hits[k].is_some_and(|(hit, _)| hit.outward * before[k] < zero);
-            is_hit.then(|| [before[k], at(y.as_ref(), contacts[k].rate)])
+            // What leaves its stop and is taken back to it has not hit another one.
+            let is_hit = |(_, is_upper)| if is_upper { before[k] > zero } else { before[k] < zero };
+            hits[k].is_some_and(is_hit).then(|| [before[k], at(y.as_ref(), contacts[k].rate)])
         });
         self.began = None;
         chosen
@@ -210,7 +211,9 @@ impl<T: Real, const N: usize> Ledger<T, N> {
             after = outcome.1;
         }
         for ((contact, hit), after) in contacts.iter().zip(hits).zip(after) {
-            let Some((_, is_upper)) = hit else { continue };
+            let Some((Hit { outward, .. }, is_upper)) = hit else { continue };
+            // Beside fast coordinates what is slow may be left by rounding to go on through its stop.
+            let after = if *outward * after < zero { zero } else { after };
             set(y.as_mut(), contact.rate, after);
             // What rests is on the stop, to the last bit.
             if after == zero {

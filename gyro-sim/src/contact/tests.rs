@@ -1,6 +1,7 @@
 //! Motions with contacts that are known piece by piece.
 
 mod fading;
+mod listed;
 mod loads;
 mod loops;
 mod stepped;

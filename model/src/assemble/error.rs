@@ -112,6 +112,23 @@ pub enum AssemblyError {
         /// Name of the force.
         name: String,
     },
+    /// A joint starts beyond a rigid stop.
+    BeyondStop {
+        /// Index into [`crate::Model::contacts`].
+        contact: usize,
+        /// Name of the contact.
+        name: String,
+        /// Name of the joint.
+        joint: String,
+        /// Which stop: `"lower"` or `"upper"`.
+        key: &'static str,
+        /// Where the joint starts.
+        value: f64,
+        /// Where the stop is.
+        stop: f64,
+        /// Unit of both: `"rad"` or `"m"`.
+        unit: &'static str,
+    },
     /// Nothing is left to move, and nothing drives it.
     OverConstrained {
         /// The last of what closes its loops.
@@ -154,6 +171,7 @@ impl AssemblyError {
             | Self::Unconnected { body, .. } => Some(Place::body(*body, "")),
             Self::Held { joint, .. } => Some(Place::joint(*joint, "")),
             Self::Link { force, .. } => Some(Place::force(*force, "")),
+            Self::BeyondStop { contact, key, .. } => Some(Place { owner: Owner::Contact(*contact), key }),
             Self::Flipped { joint, direction, .. } => Some(Place::joint(*joint, direction)),
             Self::Impossible { owner, .. }
             | Self::Contradiction { owner, .. }
@@ -164,7 +182,7 @@ impl AssemblyError {
     }
 
     /// What to write instead.
-    pub(crate) fn help(&self) -> String {
+    pub fn help(&self) -> String {
         match self {
             Self::AngularVelocity { joint, nearest, .. } => {
                 format!(
@@ -192,6 +210,10 @@ impl AssemblyError {
             Self::Link { .. } => "start the mechanism where the ends are apart, or move one of them; if they never separate, write a \
                                   force along the joint's coordinate (\"spring\" or \"damper\") instead"
                 .to_owned(),
+            Self::BeyondStop { joint, key, stop, unit, .. } => {
+                let side = if *key == "lower" { "or more" } else { "or less" };
+                format!("start joint `{joint}` at {stop} {unit} {side}, or move the stop")
+            }
             Self::OverConstrained { .. } => {
                 "use joints with more degrees of freedom, or check that axes and lengths agree exactly".to_owned()
             }
@@ -270,6 +292,10 @@ impl fmt::Display for AssemblyError {
                     if *is_given { "the start does not allow the rate of" } else { "no velocity satisfies" };
                 write!(f, "{what} {name}: off by {:.3e} {unit}", residual.abs())
             }
+            Self::BeyondStop { name, joint, key, value, stop, unit, .. } => write!(
+                f,
+                "joint `{joint}` starts at {value} {unit}, beyond the {key} stop of contact `{name}` at {stop} {unit}"
+            ),
             Self::Link { name, .. } => {
                 write!(f, "the two ends of link `{name}` coincide at the start: its force has no direction")
             }

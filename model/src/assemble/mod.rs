@@ -10,6 +10,7 @@ mod guess;
 mod links;
 pub(crate) mod projection;
 mod side;
+mod stops;
 mod tolerance;
 mod velocity;
 mod walk;
@@ -78,14 +79,14 @@ impl Model {
     /// # Errors
     /// An unconnected body; rows or given coordinates and rates that cannot be met, with the one that misses most; a
     /// pose on another branch than the guess (opposite axes, or beyond a pose where branches meet, if the guess tells
-    /// all coordinates of the tree) or a quarter turn away from it; a link whose ends coincide; a start beyond `f64`.
+    /// all coordinates of the tree) or a quarter turn away from it; a link whose ends coincide; a joint beyond a rigid stop; a start beyond `f64`.
     pub fn assemble(&self) -> Result<Start, AssemblyError> {
         let tree = Tree::of(self);
         if let Some(&body) = tree.unreached.first() {
             return Err(AssemblyError::Unconnected { body, name: self.bodies[body].name.clone() });
         }
         let start = if self.is_open(&tree) { self.walked(&tree)? } else { closing::assemble(self)? };
-        links::check(self, &start).map(|()| start)
+        links::check(self, &start).and_then(|()| stops::check(self, &start)).map(|()| start)
     }
 
     /// The start of open trees.
