@@ -419,8 +419,8 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         Ok(first)
     }
 
-    /// The event at which the step has been ended, or one before it: a step that was taken again is more exact than what
-    /// was interpolated, and may have gone through another stop.
+    /// The event at which the step has been ended, or one before it: a step that was taken again is more exact than
+    /// what was interpolated, and may have gone through another stop.
     fn before<M>(&mut self, model: &M, mut next: Next<T>) -> Result<Next<T>, Error>
     where
         D: Forced<M, Scalar = T, State = S>,

@@ -79,7 +79,8 @@ impl Model {
     /// # Errors
     /// An unconnected body; rows or given coordinates and rates that cannot be met, with the one that misses most; a
     /// pose on another branch than the guess (opposite axes, or beyond a pose where branches meet, if the guess tells
-    /// all coordinates of the tree) or a quarter turn away from it; a link whose ends coincide; a joint beyond a rigid stop; a start beyond `f64`.
+    /// all coordinates of the tree) or a quarter turn away from it; a link whose ends coincide; a joint beyond a rigid
+    /// stop; a start beyond `f64`.
     pub fn assemble(&self) -> Result<Start, AssemblyError> {
         let tree = Tree::of(self);
         if let Some(&body) = tree.unreached.first() {
