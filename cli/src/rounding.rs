@@ -26,11 +26,12 @@ Made by `cargo xtask verify --rounding > docs/rounding.md`. A proof says nothing
 
 Each function runs in `f64` and `f32`, and in `f64` in two forms of the [runtime-assembled
 model](glossary.md#runtime-assembled-model), the careful and the dense one, at the same states, and is compared with
-384-bit floats. A cell has the worst error and in parentheses the median, in units in the last place (of the precision
-in question) of the largest result, at states *near the start* / *random* / *extreme* (speeds and distances from 1e-6 to
-1e6). These states do not satisfy the constraints, except for functions in joint coordinates and those of corrected
-states (`joint_accelerations_at` and all that begin with `corrected`), which run at the maximal states of joint states
-that are drawn in the same way.
+384-bit floats. Times are those of the model file's own run, up to its end. A cell has the worst error and in
+parentheses the median, in units in the last place (of the precision in question) of the largest result, at states *near
+the start* / *random* (rates up to the start's) / *extreme* (speeds and distances from 1e-6 to 1e6). These states do not
+satisfy the constraints, except for functions in joint coordinates and those of corrected states
+(`joint_accelerations_at` and all that begin with `corrected`), which run at the maximal states of joint states that are
+drawn in the same way.
 
 How to read it:
 

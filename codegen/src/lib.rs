@@ -57,6 +57,7 @@ pub use effort::Effort;
 pub use emit::data_sheet::{DataSheet, Function, large};
 pub use equations::Argument;
 pub use equations::PartitionForm;
+pub use expr::rounding::LIKE as ROUNDING;
 pub use expr::schedule::{Operations, Passes};
 pub use groups::{Functions, Group};
 pub use kernels::Kernel;
@@ -269,12 +270,13 @@ fn equations<'m>(
     let solved = rotations.cheapest(&mut system.graph, &solution.solved);
     let joint_space = functions.has(Group::Joint).then(|| {
         let coordinates = Coordinates::derive(&mut system, &textbook);
+        coordinates.set_domains(&mut system, start);
         let candidates = Candidates::solve(&mut system, &coordinates);
         let (derived, asked) = ((&textbook, &observed), (functions, start));
         JointSpace::choose(&mut system, derived, coordinates, candidates, &solved.roots, asked)
     });
     let projects = functions.has(Group::Projection);
-    let projection = projects.then(|| forward_dynamics.projection(&mut system.graph, &textbook.kinematics));
+    let projection = projects.then(|| forward_dynamics.projection(&mut system, &textbook.kinematics));
     let parts = Parts { textbook, solution, observed, projection, partition };
     Equations::choose(system, rotations, &parts, solved, (functions, joint_space))
 }

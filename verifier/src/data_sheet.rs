@@ -85,6 +85,9 @@ fn words(function: &str) -> Option<&'static Words> {
     WORDS.iter().find(|words| words.function == function)
 }
 
+/// What every sheet says of rounding. The forms that were compared are known to the generator alone.
+const ROUNDING: &str = "* rounding: at most 10 times that of the best form compared";
+
 /// Where the section on the proof begins.
 pub const PROOF: &str = "# Proof";
 
@@ -164,6 +167,7 @@ fn expected_head(model: &Model, module: &Module) -> Vec<String> {
         ));
     }
     lines.extend(left_out(model, module).into_iter().map(|what| format!("* left out: {what}")));
+    lines.push(ROUNDING.to_owned());
     let table =
         ["", "| function | computes | + − | × | ÷ | total | zeros |", "|---|---|---|---|---|---|---|"];
     lines.extend(table.map(str::to_owned));

@@ -4,6 +4,7 @@ use crate::derive::frames::{End, JointFrames, sine_and_cosine};
 use crate::effort::Effort;
 use crate::expr::definitions::{Definitions, Expansion, Values};
 use crate::expr::differentiate::Direction;
+use crate::expr::domains::Domains;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Mat3, UNIT3, Vec3, Vec4, ZERO3};
@@ -22,7 +23,7 @@ pub struct Pose {
 }
 
 /// The model with its graph.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct System<'m> {
     pub model: &'m Model,
     pub effort: Effort,
@@ -62,6 +63,7 @@ impl<'m> System<'m> {
             tables: Vec::new(),
             turns: model.turn_references(),
         };
+        system.graph.domains = Domains::of(model);
         system.poses = (0..model.bodies.len()).map(|body| system.pose(body)).collect();
         system.joints = (0..model.joints.len()).map(|joint| system.joint_frames(joint)).collect();
         system.define_angles();

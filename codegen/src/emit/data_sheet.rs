@@ -3,6 +3,7 @@
 
 use crate::equations::{Equations, PartitionForm};
 use crate::expr::graph::{ExprId, Graph};
+use crate::expr::rounding::LIKE as ROUNDING;
 use crate::expr::schedule::{Operations, Passes};
 use crate::groups::Group;
 use crate::joint_space::obstacle;
@@ -153,6 +154,7 @@ impl DataSheet {
             ));
         }
         lines.extend(self.left_out.iter().map(|what| format!("* left out: {what}")));
+        lines.push(format!("* rounding: at most {ROUNDING} times that of the best form compared"));
         lines.extend(
             ["", "| function | computes | + − | × | ÷ | total | zeros |", "|---|---|---|---|---|---|---|"]
                 .map(String::from),
@@ -164,7 +166,7 @@ impl DataSheet {
 
 impl Function {
     fn of(graph: &Graph, (kernel, chosen): (Kernel, &Chosen)) -> Self {
-        let Chosen { roots, forms, reductions } = chosen;
+        let Chosen { roots, forms, reductions, .. } = chosen;
         Self {
             kernel,
             operations: Operations::count(graph, roots),

@@ -5,7 +5,7 @@
 //! hundreds of digits after a few products, and most of the time of a generation may go into bringing them to lowest
 //! terms: hence a library of numbers whose greatest common divisors are quick.
 
-use dashu_base::{BitTest, Gcd, Sign, SquareRoot};
+use dashu_base::{BitTest, Gcd, PowerOfTwo, Sign, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
 use gyro_model::Rational;
@@ -128,6 +128,19 @@ impl Constant {
         let root = ((square << (2 * half)) / divisor).sqrt();
         let nearest = RBig::from_parts(root.into(), UBig::ONE << half).to_f64().value();
         if self.is_negative() { -nearest } else { nearest }
+    }
+
+    /// Whether it is a number of few binary digits, so that it is not rounded.
+    pub fn is_double(&self) -> bool {
+        let Exact { coefficient, radicand } = &*self.0;
+        radicand.is_one()
+            && coefficient.denominator().is_power_of_two()
+            && coefficient.numerator().bit_len() <= 53
+    }
+
+    /// Whether a product with it is not rounded.
+    pub fn is_power_of_two(&self) -> bool {
+        self.is_double() && self.0.coefficient.numerator().unsigned_abs().is_power_of_two()
     }
 
     fn of(coefficient: RBig, radicand: UBig) -> Self {

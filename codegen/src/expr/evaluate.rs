@@ -1,6 +1,7 @@
 //! Evaluates expressions numerically; shares no code with simplification.
 
 use crate::expr::by_expr::ByExpr;
+use crate::expr::domains::between;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use num_traits::Float;
@@ -61,14 +62,7 @@ pub fn evaluate<F: Float>(graph: &Graph, roots: &[ExprId], value: impl Fn(Symbol
 
 /// A reproducible value between −1 and 1 for each symbol.
 pub fn sample(seed: u64) -> impl Fn(Symbol) -> f64 {
-    use std::hash::{DefaultHasher, Hash, Hasher};
-    move |symbol| {
-        let mut hasher = DefaultHasher::new();
-        (seed, symbol).hash(&mut hasher);
-        #[expect(clippy::cast_precision_loss, reason = "a random fraction")]
-        let fraction = (hasher.finish() >> 11) as f64 / (1u64 << 53) as f64;
-        2.0 * fraction - 1.0
-    }
+    move |symbol| between(seed, symbol)
 }
 
 /// A reproducible state with unit Euler parameters and positive parameters.

@@ -5,6 +5,7 @@
 //! the operands of commutative operations are ordered. An operand always has a smaller id than its expression.
 
 use crate::expr::constant::Constant;
+use crate::expr::domains::Domains;
 use crate::expr::symbol::Symbol;
 use gyro_model::Rational;
 use hashbrown::HashTable;
@@ -75,7 +76,7 @@ impl Node {
 }
 
 /// The arena.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Graph {
     nodes: Vec<Node>,
     /// By their hashes, which stand beside them: to move an entry, or to tell most that differ, takes no node.
@@ -84,6 +85,8 @@ pub struct Graph {
     changes: Vec<Changes>,
     /// A bit for each node, all of them zero but while a walk is under way.
     seen: RefCell<Vec<u64>>,
+    /// The values that variables take.
+    pub domains: Domains,
 }
 
 /// What an expression changes with: the last of what its symbols are.
@@ -100,7 +103,8 @@ impl Graph {
 
     pub fn new() -> Self {
         let (nodes, index, changes) = (Vec::new(), HashTable::new(), Vec::new());
-        let mut graph = Self { nodes, index, changes, seen: RefCell::default() };
+        let (seen, domains) = (RefCell::default(), Domains::default());
+        let mut graph = Self { nodes, index, changes, seen, domains };
         graph.integer(0);
         graph.integer(1);
         graph

@@ -14,12 +14,15 @@ use super::{forces, maps};
 use crate::derive::Textbook;
 use crate::derive::joint_coordinate::Load;
 use crate::derive::system::System;
-use crate::expr::definitions::Values;
+use crate::expr::definitions::{Expansion, Values};
+use crate::expr::domains::POINTS;
+use crate::expr::evaluate::Program;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::ZERO3;
 use crate::solve::gram_schmidt::Armature;
-use gyro_model::{JointCoordinate, Model, RowOwner, Tree};
+use gyro_model::{JointCoordinate, Model, RowOwner, Start, Tree};
+use std::f64::consts::PI;
 
 /// Joint coordinates and how they go with the maximal ones.
 #[derive(Debug)]
@@ -61,7 +64,43 @@ pub struct Coordinates {
     pub unit: Vec<Vec<ExprId>>,
 }
 
+/// How far from the start coordinates of loops are tried: rad, or sizes of the mechanism. Most states that are far from
+/// one with closed loops are none of the mechanism.
+const NEAR: f64 = 0.3;
+
 impl Coordinates {
+    /// Where the coordinates are when expressions are compared: in trees angles are any, in loops near the start.
+    pub fn set_domains(&self, system: &mut System, start: &Start) {
+        let mut scratch = system.clone();
+        let reduced = maps::reduced(&mut scratch, &self.layout, &self.of_joints);
+        let reduced = Expansion::new(&scratch.definitions).all(&mut scratch.graph, &reduced);
+        let start = maps::joint_start(&scratch, &self.layout, &reduced, start);
+        let orientations = self.layout.links.iter().filter_map(|link| link.orientation);
+        let orientations: Vec<_> = orientations.map(|place| place.x).collect();
+        let (has_loops, size) = (!self.closure.rows.is_empty(), system.model.size());
+        let is_angle = |x: usize| self.layout.scalars().any(|of| of.place.x == x && of.kind.is_angle());
+        let is_part = |x: usize| orientations.iter().any(|&first| (first..first + 4).contains(&x));
+        let near = |x: usize| match (is_angle(x), is_part(x)) {
+            (false, false) => (start[x], if has_loops { NEAR * size } else { size }),
+            _ if has_loops => (start[x], NEAR),
+            (true, _) => (start[x], PI),
+            (_, true) => (0.0, 1.0),
+        };
+        let near = (0..self.layout.n_coordinates).map(|x| (x, near(x))).collect();
+        let domains = &mut system.graph.domains;
+        domains.set_joints(near, &start[self.layout.n_coordinates..], orientations);
+        domains.set_tables(&system.tables);
+        let graph = &mut scratch.graph;
+        let (symbols, maximal): (Vec<_>, Vec<_>) = self.maximal.iter().unzip();
+        let maximal = Expansion::at(&scratch.definitions, &self.in_joints).all(graph, &maximal);
+        let program = Program::of(graph, &maximal);
+        let at = |point| {
+            let values = program.run(|symbol| domains.value(symbol, point));
+            symbols.iter().map(|&&symbol| symbol).zip(values).collect()
+        };
+        domains.known = (0..POINTS).map(at).collect();
+    }
+
     pub fn derive(system: &mut System, textbook: &Textbook) -> Self {
         let (mut known, beside) = coordinates_beside_joints(system.model, &system.tree);
         let turns = turns_to_count(system, &known);

@@ -1,6 +1,7 @@
 //! Chooses the cheapest of several forms of a function, compared after the final passes.
 
 use crate::expr::graph::{ExprId, Graph};
+use crate::expr::rounding::{choose, rounds_well};
 use crate::expr::schedule::Operations;
 use crate::simplify::normal_form::Reduction;
 use crate::simplify::reassociate::reassociated;
@@ -51,15 +52,19 @@ impl FinalPasses {
 
     /// The same expressions, after these passes.
     pub fn applied(self, graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
-        let roots = if self.chooses_scales { scaled(graph, roots) } else { roots.to_vec() };
-        reassociated(graph, &roots)
+        let now = roots;
+        let roots = if self.chooses_scales { scaled(graph, now) } else { now.to_vec() };
+        let then = reassociated(graph, &roots);
+        if then == now || rounds_well(graph, &then, now) { then } else { now.to_vec() }
     }
 
-    /// The candidate that takes the fewest operations after these passes, and what each would have taken.
+    /// The candidate that takes the fewest operations after these passes, of those that round well; and what each would
+    /// have taken.
     pub fn cheapest(self, graph: &mut Graph, candidates: Vec<(String, Vec<ExprId>)>) -> Chosen {
         let costs: Vec<_> = candidates.iter().map(|(_, roots)| self.cost(graph, roots)).collect();
-        let cost = |&k: &usize| (costs[k].functions, costs[k].total());
-        let taken = (0..candidates.len()).min_by_key(cost).expect("there is a candidate");
+        let cost = |k: usize| (costs[k].functions, costs[k].total());
+        let forms: Vec<_> = candidates.iter().map(|(_, roots)| roots.as_slice()).collect();
+        let taken = choose(graph, &forms, cost);
         let form = |(k, (name, _)): (usize, &(String, _))| Form {
             name: name.clone(),
             operations: costs[k],

@@ -6,6 +6,7 @@
 
 use crate::expr::by_expr::ByExpr;
 use crate::expr::graph::{ExprId, Graph, Node};
+use crate::expr::rounding::rounds_well;
 use crate::expr::schedule::Uses;
 use crate::expr::symbol::Symbol;
 use rustc_hash::FxHashMap as HashMap;
@@ -19,7 +20,10 @@ pub fn separate<'r>(
     let mut setup = Setup { graph, places: HashMap::default(), values: Vec::new(), memo: ByExpr::default() };
     for roots in functions {
         if setup.graph.reachable(roots).iter().any(|&id| setup.graph.is_settled(id)) {
-            *roots = Gathering::of(setup.graph, roots);
+            let gathered = Gathering::of(setup.graph, roots);
+            if rounds_well(setup.graph, &gathered, roots) {
+                *roots = gathered;
+            }
             *roots = roots.iter().map(|&root| setup.without(root)).collect();
         }
     }

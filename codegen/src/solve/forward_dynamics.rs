@@ -7,6 +7,7 @@ use crate::derive::kinematics::Kinematics;
 use crate::derive::system::System;
 use crate::expr::definitions::Expansion;
 use crate::expr::graph::{ExprId, Graph};
+use crate::expr::rounding::choose;
 use crate::expr::schedule::Operations;
 use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::symbol::Symbol;
@@ -81,7 +82,7 @@ impl ForwardDynamics {
     fn accelerations(&self, system: &mut System, textbook: &Textbook) -> Vec<ExprId> {
         let candidates = self.candidates(system, &textbook.kinematics, &textbook.dynamics);
         let admitted = candidates.admitted(system);
-        cheapest(&system.graph, admitted)
+        cheapest(system, admitted)
     }
 
     fn candidates(&self, system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Candidates {
@@ -109,7 +110,8 @@ impl ForwardDynamics {
 
     /// The smallest (δr, δπ') of each moving body, in the metric of the masses, that change the rows by
     /// [`Symbol::Change`]: eq. (17) without forces and with these changes for γ.
-    pub fn projection(&self, graph: &mut Graph, kinematics: &Kinematics) -> Vec<ExprId> {
+    pub fn projection(&self, system: &mut System, kinematics: &Kinematics) -> Vec<ExprId> {
+        let graph = &mut system.graph;
         let changes: Vec<_> =
             (0..kinematics.phi.len()).map(|row| graph.symbol(Symbol::Change(row))).collect();
         let projected = self.eliminated.iter().map(|tree| {
@@ -129,7 +131,7 @@ impl ForwardDynamics {
         });
         let mut projected: Vec<_> = projected.collect();
         projected.extend(self.reduced.as_ref().map(|tree| listed(&tree.project(graph, &changes))));
-        cheapest(graph, projected)
+        cheapest(system, projected)
     }
 }
 
@@ -198,8 +200,13 @@ fn cost(graph: &Graph, form: &[ExprId]) -> usize {
     Operations::recurring(graph, form).total()
 }
 
-fn cheapest(graph: &Graph, forms: Vec<Vec<ExprId>>) -> Vec<ExprId> {
-    forms.into_iter().min_by_key(|form| cost(graph, form)).expect("at least one")
+/// The form of the fewest operations, symbols being one each, of those that round well.
+fn cheapest(system: &System, mut forms: Vec<Vec<ExprId>>) -> Vec<ExprId> {
+    let mut graph = system.graph.clone();
+    let mut expansion = Expansion::new(&system.definitions);
+    let expanded: Vec<_> = forms.iter().map(|form| expansion.all(&mut graph, form)).collect();
+    let expanded: Vec<_> = expanded.iter().map(Vec::as_slice).collect();
+    forms.swap_remove(choose(&graph, &expanded, |form| cost(&graph, &forms[form])))
 }
 
 /// The forms of the accelerations of an open tree that lose no accuracy against `keeping`, which is known to cancel

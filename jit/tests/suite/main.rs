@@ -7,4 +7,5 @@ mod kernels;
 mod pair;
 mod partition;
 mod proof;
+mod rounding;
 mod trains;

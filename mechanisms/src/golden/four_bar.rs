@@ -12,6 +12,7 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the model file asks for none)
+//! * rounding: at most 10 times that of the best form compared
 //!
 //! | function | computes | + − | × | ÷ | total | zeros |
 //! |---|---|---|---|---|---|---|

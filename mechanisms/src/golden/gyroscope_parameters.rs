@@ -10,6 +10,7 @@
 //! * left out: coordinates of `base` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: outputs (the model file asks for none)
+//! * rounding: at most 10 times that of the best form compared
 //!
 //! | function | computes | + − | × | ÷ | total | zeros |
 //! |---|---|---|---|---|---|---|

@@ -12,7 +12,7 @@ use std::ops::Range;
 pub enum Kind {
     /// Near the start: joints violated by about 1e-7, speeds of order one.
     NearStart,
-    /// Anything between −1 and 1.
+    /// Anything between −1 and 1, rates up to the largest of the start's if that is more.
     Random,
     /// Speeds and distances between 1e-6 and 1e6.
     Extreme,
@@ -33,7 +33,7 @@ impl fmt::Display for Kind {
     }
 }
 
-/// A time and a state.
+/// A time of the run, up to its end, and a state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// Which kind of state it is.
@@ -79,7 +79,7 @@ fn sample(
         |layout| (layout.n_coordinates..layout.n_motion(), layout.euler().collect()),
     );
     let raw_joints = self::raw(kind, &module.joint_start, &euler_of_joints, rates, of_joints);
-    let t = to_single(random.random_range(0.0..1.0));
+    let t = to_single(model.simulation.t_end * random.random_range(0.0..=1.0));
     let (state, joints) = (of_length_one(&raw, &euler), of_length_one(&raw_joints, &euler_of_joints));
     let zeros = vec![0.0; model.rows().len()];
     let changes = self::raw(kind, &zeros, &[], 0..zeros.len(), of_rows);
@@ -88,6 +88,7 @@ fn sample(
 
 /// Numbers of a kind; `euler` says where Euler parameters start, `rates` where velocities are.
 fn raw(kind: Kind, start: &[f64], euler: &[usize], rates: Range<usize>, random: &mut ChaCha8Rng) -> Vec<f64> {
+    let fastest = start[rates.clone()].iter().fold(1.0_f64, |fastest, rate| fastest.max(rate.abs()));
     let number = |(place, start): (usize, &f64)| {
         let is_euler = euler.iter().any(|&first| (first..first + 4).contains(&place));
         let unit = random.random_range(-1.0..1.0);
@@ -95,6 +96,7 @@ fn raw(kind: Kind, start: &[f64], euler: &[usize], rates: Range<usize>, random: 
             Kind::NearStart if rates.contains(&place) => unit,
             Kind::NearStart => start + NEAR * unit,
             Kind::Extreme if !is_euler => unit.signum() * 10.0_f64.powf(EXTREME * unit),
+            Kind::Random if rates.contains(&place) => fastest * unit,
             Kind::Random | Kind::Extreme => unit,
         })
     };

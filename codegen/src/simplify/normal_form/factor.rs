@@ -6,8 +6,9 @@
 //! 11(6), 1992, whose cubes have no coefficients: here sums match up to a constant factor, and a constant is a factor
 //! like any other.
 
-use super::polynomial::{Literal, Monomial, mix};
+use super::polynomial::{Literal, Monomial};
 use super::sums::{Ratio, Scale, Scales, SumId, Sums, Term, Value};
+use crate::expr::domains::mix;
 use rustc_hash::FxHashMap as HashMap;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

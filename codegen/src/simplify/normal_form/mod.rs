@@ -13,6 +13,7 @@ mod sums;
 
 use crate::expr::evaluate::{evaluate, sample};
 use crate::expr::graph::{ExprId, Graph, Node};
+use crate::expr::rounding::rounds_well;
 use crate::expr::schedule::Operations;
 use crate::expr::symbol::Symbol;
 use expand::Expansion;
@@ -67,7 +68,10 @@ pub fn normal_form_of(
     let relations = relations(graph, unit, roots);
     let cost = Operations::recurring(graph, roots).total();
     match search(graph, &relations, (roots, divisors)) {
-        Some(form) if form.cost < cost => form.system.build(graph),
+        Some(form) if form.cost < cost => {
+            let built = form.system.build(graph);
+            if rounds_well(graph, &built, roots) { built } else { roots.to_vec() }
+        }
         _ => roots.to_vec(),
     }
 }

@@ -1,6 +1,7 @@
 //! Polynomials with exact coefficients, in canonical form: equal polynomials are equal data.
 
 use crate::expr::constant::Constant;
+use crate::expr::domains::mix;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
@@ -174,12 +175,4 @@ fn add_constant(sum: &mut Vec<Constant>, constant: Constant) {
         None => sum.push(constant),
     }
     sum.sort_by(|a, b| a.to_f64().total_cmp(&b.to_f64()));
-}
-
-/// A number that looks random (splitmix64).
-pub fn mix(x: u64) -> u64 {
-    let mut z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
