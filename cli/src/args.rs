@@ -333,7 +333,7 @@ mod tests {
         assert_eq!((args.engine(), args.precision, args.json), (Engine::Dense, Precision::F32, true));
         assert_eq!((args.t_end, args.step), (Some(2.0), Some(1e-3)));
         assert_eq!((args.correct_every, args.every), (Some(5e-3), Some(0.5)));
-        assert_eq!(args.method, Some(MethodName::Direct));
+        assert_eq!(args.method, Some(MethodName::Kept(Correction::None)));
         assert_eq!(args.set[0], ("m".to_owned(), parse_decimal("-0.1").unwrap()));
         assert_eq!(args.set[1], ("g".to_owned(), parse_decimal("10").unwrap()));
         assert_eq!(args.input[0], ("motor".to_owned(), InputSetting::File(PathBuf::from("a=b.csv"), None)));
@@ -397,7 +397,7 @@ mod tests {
             (args.step, args.correct_every, args.correct_when),
             (Some(1e-4), None, Some(When::Steps(1)))
         );
-        assert_eq!((args.method, args.correction), (None, Some(Correction::Partition)));
+        assert_eq!(args.correction(), Some(Correction::Partition));
         assert_eq!(args.input.len(), 2);
     }
 

@@ -26,6 +26,7 @@ pub(crate) fn object(
         "coordinates": scene.approach.coordinates.name(),
         "correction": scene.approach.correction.to_string(),
         "tolerance": scene.approach.tolerance,
+        "chosen": scene.chosen.to_string(),
         "step": scene.approach.tolerance.is_none().then_some(scene.settings.step),
         "t": last.t,
         "degrees_of_freedom": scene.model.degrees_of_freedom(),

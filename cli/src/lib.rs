@@ -7,6 +7,7 @@ mod batches;
 mod cache;
 pub mod chain;
 mod check;
+mod choice;
 mod closed_loop;
 mod columns;
 mod compare;

@@ -160,8 +160,8 @@ impl Run {
         stop: Stop<'_>,
     ) -> Result<Self, Failure> {
         let page = counting_work(model.clone());
-        let scene = Scene::of(page, file.to_owned(), &request.0)?;
-        let outcome = outcome(&scene, kernels, stop)?;
+        let mut scene = Scene::of(page, file.to_owned(), &request.0)?;
+        let outcome = outcome(&mut scene, kernels, stop)?;
         Ok(Self { scene, outcome, kernels: kernels.clone() })
     }
 
@@ -238,9 +238,10 @@ impl Run {
     pub fn verdict(&self, stop: Stop<'_>) -> Result<Value, Failure> {
         let mut scene = Scene { has_companions: true, ..self.scene.clone() };
         scene.approach.examine = true;
-        let outcome = outcome(&scene, &self.kernels, stop)?;
-        let verdict =
-            verdict::verdict(&scene, &outcome, |companion| self::outcome(companion, &self.kernels, stop))?;
+        let outcome = outcome(&mut scene, &self.kernels, stop)?;
+        let verdict = verdict::verdict(&scene, &outcome, |companion| {
+            self::outcome(&mut companion.clone(), &self.kernels, stop)
+        })?;
         let mut object = json::object(&scene, &outcome, (Some(&verdict), None), &[]);
         object["verdict"]["text"] = json!(verdict::text(&verdict, &outcome));
         Ok(object["verdict"].take())
@@ -248,9 +249,9 @@ impl Run {
 }
 
 /// Makes the run of a scene.
-fn outcome(scene: &Scene, kernels: &Kernels, stop: Stop<'_>) -> Result<Outcome, Failure> {
+fn outcome(scene: &mut Scene, kernels: &Kernels, stop: Stop<'_>) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
-    simulate::follow(scene, &mut outcome, |tell| {
+    simulate::follow(scene, &mut outcome, |scene, tell| {
         jit::explained(scene, tell, |runs, tell| make(scene, runs, (kernels, stop), tell))
     })?;
     Ok(outcome)

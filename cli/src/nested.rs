@@ -409,6 +409,7 @@ fn listen(output: &mut impl BufRead, tell: &mut impl FnMut(Event<'_>)) -> Result
             Reply::Occurred(found) => tell(Event::Occurred(&found))?,
             Reply::Linear(linear) => tell(Event::Linear(&linear))?,
             Reply::Stopped(t, state) => tell(Event::Stopped(t, &state))?,
+            Reply::Stiff(t) => tell(Event::Stiff(t))?,
             Reply::Progress(t) => tell(Event::Progress(t))?,
             Reply::Forecast(forecast) => tell(Event::Forecast(forecast))?,
             Reply::Timed(timed) => timing = Some(timed),

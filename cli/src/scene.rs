@@ -1,10 +1,11 @@
 //! What is to be simulated: a model file with the command line's changes.
 
 use crate::args::{Engine, Precision, SimulateArgs};
+use crate::choice::{Chosen, choose};
 use crate::failure::Failure;
 use crate::progress::Spinner;
 use crate::{contacts, controllers, events, files, inputs, paths, remarks};
-use gyro_model::{ForceKind, JointKind, Method, Model, Move, Number, Rational, Support};
+use gyro_model::{ForceKind, JointKind, Model, Move, Number, Rational, Support};
 use gyro_runner::{
     Approach, Controller, Coordinates, Correction, Input, Offers, Settings, Start, any_varies,
 };
@@ -21,6 +22,8 @@ pub(crate) struct Scene {
     pub(crate) model: Model,
     pub(crate) settings: Settings,
     pub(crate) approach: Approach,
+    /// What of it was chosen, and why.
+    pub(crate) chosen: Chosen,
     /// What could have been asked for.
     pub(crate) offers: Offers,
     /// Whether all work is accounted for, so that the energy's balance has to close.
@@ -29,6 +32,8 @@ pub(crate) struct Scene {
     /// How far the assembly has moved what the model file gives of the start.
     pub(crate) moved: Vec<Move>,
     pub(crate) engine: Engine,
+    /// What generated code allows and how it would be run, where another engine was chosen for its speed alone.
+    pub(crate) generated: Option<(Offers, Approach)>,
     pub(crate) precision: Precision,
     /// How long generated code is searched for short forms.
     pub(crate) effort: gyro_codegen::Effort,
@@ -50,9 +55,7 @@ impl Scene {
     pub(crate) fn of(page: Model, page_name: String, args: &SimulateArgs) -> Result<Self, Failure> {
         let mut model = with_parameters(&page, &args.set)?;
         events::add(&mut model, &args.event)?;
-        refuse_joint_coordinates(&model, args)?;
         contacts::refuse_shared_reactions(&model)?;
-        let (settings, approach) = (settings(&model, args), approach(&model, args));
         let inputs = inputs::inputs(&model, &args.input)?;
         let start_controllers = controllers::controllers(&model);
         let offers = Offers {
@@ -61,6 +64,9 @@ impl Scene {
             period: start_controllers.iter().map(Controller::period_s).reduce(f64::min),
             ..offers(&model, args)
         };
+        let (approach, chosen) = choose(&model, args, &offers);
+        let settings = settings(&model, args, &approach);
+        refuse_joint_coordinates(&model, args, &approach)?;
         if let Some(words) = refusal(&offers, &settings, &approach, args) {
             return Err(Failure::Usage(words));
         }
@@ -74,12 +80,14 @@ impl Scene {
             page_name,
             settings,
             approach,
+            chosen,
             offers,
             is_balanced: is_balanced(&model, &start.inputs),
             model,
             start,
             moved,
             engine: args.engine(),
+            generated: None,
             precision: args.precision,
             effort: args.effort.into(),
             proves: proves(args),
@@ -90,6 +98,14 @@ impl Scene {
     /// Values of the parameters in their order.
     pub(crate) fn parameters(&self) -> Vec<f64> {
         self.model.parameters.iter().map(|p| gyro_model::to_f64(&p.value)).collect()
+    }
+
+    /// Has it run as is fit for a scene that was found to be stiff at this time.
+    pub(crate) fn turn(&mut self, t: f64) {
+        if let Some((offers, approach)) = self.generated.take() {
+            (self.engine, self.offers, self.approach) = (Engine::Generated, offers, approach);
+        }
+        self.approach = self.chosen.turn(&self.approach, t);
     }
 
     /// The algorithm's name.
@@ -141,8 +157,13 @@ pub fn counting_work(model: Model) -> Model {
 
 /// Joint coordinates are for generated code of mechanisms that have them: which of the two is missing, and what to
 /// leave out.
-fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs) -> Result<(), Failure> {
-    if args.coordinates != Coordinates::Joint {
+fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs, approach: &Approach) -> Result<(), Failure> {
+    let asks = match args.coordinates {
+        Some(_) => "--coordinates joint",
+        None if model.simulation.coordinates.is_some() => "coordinates = \"joint\" in [simulation]",
+        None => return Ok(()),
+    };
+    if approach.coordinates != Coordinates::Joint {
         return Ok(());
     }
     let words = match (args.engine(), gyro_codegen::lacks_joint_coordinates(model)) {
@@ -160,7 +181,7 @@ fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs) -> Result<(), Fa
         }
         (_, None) => return Ok(()),
     };
-    Err(Failure::Usage(format!("--coordinates joint: {words}")))
+    Err(Failure::Usage(format!("{asks}: {words}")))
 }
 
 fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Failure> {
@@ -209,42 +230,21 @@ fn refusal(offers: &Offers, settings: &Settings, approach: &Approach, args: &Sim
     offers.refusal(&gyro_runner::scheduled(settings, approach), approach)
 }
 
-/// A run of fixed steps that would take longer than this, s, is made only by those who say so.
-const PATIENCE: f64 = 3600.0;
-
-fn approach(model: &Model, args: &SimulateArgs) -> Approach {
-    let correction = match (args.correction, args.method.map_or(model.simulation.method, Method::from)) {
-        (Some(correction), _) => correction,
-        (None, Method::Partitioned) => Correction::Partition,
-        (None, Method::Direct) => Correction::None,
-    };
-    Approach {
-        integrator: args.integrator,
-        tolerance: args.tolerance,
-        coordinates: args.coordinates,
-        correction,
-        when: args.correct_when,
-        budget: args.budget,
-        patience: Some(PATIENCE),
-        examine: args.verify || args.linearize.is_some(),
-    }
-}
-
-fn settings(model: &Model, args: &SimulateArgs) -> Settings {
+fn settings(model: &Model, args: &SimulateArgs, approach: &Approach) -> Settings {
     let page = &model.simulation;
-    let method = args.method.map_or(page.method, Method::from);
     let step = args.step.unwrap_or(page.step);
-    let is_corrected = match args.correction {
-        Some(correction) => correction != Correction::None,
-        None => method == Method::Partitioned,
+    let correct_every = (approach.coordinates == Coordinates::Maximal
+        && approach.correction != Correction::None)
+        .then_some(args.correct_every.unwrap_or(page.correct_every));
+    let sample_every = match approach.tolerance {
+        Some(_) => page.sample_every,
+        None => nearest_multiple(page.sample_every, correct_every.unwrap_or(step)),
     };
-    let correct_every = is_corrected.then_some(args.correct_every.unwrap_or(page.correct_every));
-    let grid = correct_every.unwrap_or(step);
     Settings {
         t_end: args.linearize.or(args.t_end).unwrap_or(page.t_end),
         step,
         correct_every,
-        sample_every: args.every.unwrap_or_else(|| nearest_multiple(page.sample_every, grid)),
+        sample_every: args.every.unwrap_or(sample_every),
     }
 }
 

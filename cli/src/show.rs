@@ -13,7 +13,7 @@ use crate::write::{self, Known};
 use crate::{remarks, simulate, words};
 use gyro_assembled::Recursive;
 use gyro_model::{Model, Output, OutputKind};
-use gyro_runner::{Coordinates, Correction, Integrator, Sample};
+use gyro_runner::{Approach, Coordinates, Correction, Integrator, Sample};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -49,7 +49,7 @@ struct Written {
 
 fn written(args: &ShowArgs) -> Result<Written, Failure> {
     refuse_other_results(&args.simulate)?;
-    let first = Scene::new(&with_engine(&args.simulate)?)?;
+    let first = scene(&args.simulate)?;
     let path = args.simulate.out.clone().unwrap_or_else(|| {
         let name = &first.model.name;
         Path::new("out").join(name).join(format!("{name}.html"))
@@ -59,8 +59,8 @@ fn written(args: &ShowArgs) -> Result<Written, Failure> {
     let mut looks = vec![meshes::read(&first.model, &args.simulate.model)?];
     let mut scenes = vec![first];
     if !args.compare.is_empty() {
-        let changed = changed(&args.simulate, &args.compare)?;
-        let second = Scene::new(&changed)?;
+        let changed = changed(&args.simulate, &args.compare);
+        let second = scene(&changed)?;
         looks.push(meshes::read(&second.model, &changed.model)?);
         scenes.push(second);
     }
@@ -70,8 +70,7 @@ fn written(args: &ShowArgs) -> Result<Written, Failure> {
             if args.reactions {
                 add_reactions(scene);
             }
-            let method = (args.simulate.integrator, args.simulate.tolerance);
-            Some(live::live(scene, method)?)
+            Some(live::live(scene)?)
         }
         _ => None,
     };
@@ -101,18 +100,25 @@ fn refuse_other_results(args: &SimulateArgs) -> Result<(), Failure> {
     }
 }
 
-/// The engine that answers first, unless one is asked for; the coordinates in which contacts are known.
-fn with_engine(args: &SimulateArgs) -> Result<SimulateArgs, Failure> {
-    let (mut args, model) = (args.clone(), crate::scene::read(&args.model)?);
-    if !model.contacts.is_empty() {
-        args.coordinates = Coordinates::Joint;
+/// The scene with the engine that answers first, unless one is asked for.
+fn scene(args: &SimulateArgs) -> Result<Scene, Failure> {
+    let whole = Scene::new(args)?;
+    let Approach { integrator, correction, .. } = whole.approach;
+    let asks = args.coordinates == Some(Coordinates::Joint)
+        || whole.model.simulation.coordinates == Some(Coordinates::Joint.name());
+    let needs_code = asks
+        || whole.offers.touches
+        || correction == Correction::ClosedForm
+        || integrator == Integrator::Rodas4;
+    let engine = quickest(&whole);
+    if args.engine.is_some() || needs_code || engine == Engine::Generated {
+        return Ok(whole);
     }
-    let needs_code = args.coordinates == Coordinates::Joint
-        || args.correction == Some(Correction::ClosedForm)
-        || args.integrator == Integrator::Rodas4;
-    let engine = if needs_code { Engine::Generated } else { quickest(&model, &args) };
-    args.engine = args.engine.or(Some(engine));
-    Ok(args)
+    let args = SimulateArgs { engine: Some(engine), ..args.clone() };
+    let mut quick = Scene::of(whole.page, whole.page_name, &args)?;
+    quick.approach.leaves_stiff = whole.approach.leaves_stiff;
+    quick.generated = Some((whole.offers, whole.approach));
+    Ok(quick)
 }
 
 /// Time that generating and compiling takes, s: what the runtime-assembled model has to answer in.
@@ -123,9 +129,8 @@ const COMPILING: f64 = 15.0;
 const STEP: (f64, f64) = (5e-6, 8e-6);
 
 /// By how long a run with fixed steps takes; under error control steps are few.
-fn quickest(model: &Model, args: &SimulateArgs) -> Engine {
-    let length = args.t_end.unwrap_or(model.simulation.t_end);
-    let steps = args.tolerance.map_or(length / args.step.unwrap_or(model.simulation.step), |_| 0.0);
+fn quickest(Scene { model, approach, settings, .. }: &Scene) -> Engine {
+    let steps = approach.tolerance.map_or(settings.t_end / settings.step, |_| 0.0);
     #[expect(clippy::cast_precision_loss, reason = "a count")]
     let n = model.coordinate_bodies().len() as f64;
     let is_tree = Recursive::<f64>::supports(model).is_ok();
@@ -138,7 +143,7 @@ fn quickest(model: &Model, args: &SimulateArgs) -> Engine {
 }
 
 /// The options of the second run: what is changed replaces what the first run has.
-fn changed(args: &SimulateArgs, changes: &[Change]) -> Result<SimulateArgs, Failure> {
+fn changed(args: &SimulateArgs, changes: &[Change]) -> SimulateArgs {
     let mut args = args.clone();
     let model =
         changes.iter().find_map(|change| if let Change::Model(path) = change { Some(path) } else { None });
@@ -147,7 +152,6 @@ fn changed(args: &SimulateArgs, changes: &[Change]) -> Result<SimulateArgs, Fail
         args.set.clear();
         args.input.clear();
     }
-    let mut args = with_engine(&args)?;
     for change in changes {
         match change {
             Change::Engine(engine) => args.engine = Some(*engine),
@@ -158,7 +162,7 @@ fn changed(args: &SimulateArgs, changes: &[Change]) -> Result<SimulateArgs, Fail
             }
         }
     }
-    Ok(args)
+    args
 }
 
 /// By what the runs differ.

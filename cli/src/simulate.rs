@@ -20,11 +20,11 @@ use std::path::{Path, PathBuf};
 
 /// Simulates a model, prints a summary and writes its files.
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
-    let scene = Scene::new(args)?;
+    let mut scene = Scene::new(args)?;
     let opened = folder(args, &scene.model.name)?;
     let folder = opened.as_ref().map(Folder::path);
     let mut outcome = Outcome::default();
-    match run(&scene, &mut outcome) {
+    match run(&mut scene, &mut outcome) {
         Ok(()) => {}
         Err(Failure::Interrupted(_)) => return Err(keep_the_part(args, &scene, &outcome, folder)?),
         Err(failure) => return Err(keep_what_there_is(&scene, &outcome.samples, folder, failure)),
@@ -36,7 +36,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let verdict = match args.verify {
         true => Some(verdict::verdict(&scene, &outcome, |companion| {
             let mut other = Outcome::default();
-            run(companion, &mut other).map(|()| other)
+            run(&mut companion.clone(), &mut other).map(|()| other)
         })?),
         false => {
             verdict::warnings(&scene, &outcome).iter().for_each(|words| remarks::warn(words));
@@ -62,20 +62,20 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
 }
 
 /// Runs a scene, prints its summary and writes its table and plots to a folder.
-pub(crate) fn simulate_scene(scene: &Scene, folder: &Path) -> Result<(), Failure> {
+pub(crate) fn simulate_scene(mut scene: Scene, folder: &Path) -> Result<(), Failure> {
     let opened = Folder::open(folder)?;
     let mut outcome = Outcome::default();
-    if let Err(failure) = run(scene, &mut outcome) {
-        return Err(keep_what_there_is(scene, &outcome.samples, Some(opened.path()), failure));
+    if let Err(failure) = run(&mut scene, &mut outcome) {
+        return Err(keep_what_there_is(&scene, &outcome.samples, Some(opened.path()), failure));
     }
-    let written = write_files(scene, &outcome, opened.path())?;
-    say(&summary::text(scene, &outcome, "", &written))
+    let written = write_files(&scene, &outcome, opened.path())?;
+    say(&summary::text(&scene, &outcome, "", &written))
 }
 
 /// Runs a scene; what there is up to a failure is kept in the outcome.
-pub(crate) fn run(scene: &Scene, outcome: &mut Outcome) -> Result<(), Failure> {
+pub(crate) fn run(scene: &mut Scene, outcome: &mut Outcome) -> Result<(), Failure> {
     let mut took = Took::default();
-    follow(scene, outcome, |tell| match scene.engine {
+    follow(scene, outcome, |scene, tell| match scene.engine {
         Engine::Generated => nested::simulate(scene, tell, &mut took),
         #[cfg(feature = "jit")]
         Engine::Jit => jit::simulate(scene, tell),
@@ -87,23 +87,51 @@ pub(crate) fn run(scene: &Scene, outcome: &mut Outcome) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The same with whatever makes the run.
+/// The same with whatever makes runs. One whose method was chosen and that turns out to be stiff is made again by a
+/// method for such scenes; should that fail, as it was.
 pub(crate) fn follow(
+    scene: &mut Scene,
+    outcome: &mut Outcome,
+    mut run: impl FnMut(&Scene, &mut dyn FnMut(Event<'_>)) -> Result<Summary, Failure>,
+) -> Result<(), Failure> {
+    let before = scene.clone();
+    let failure = match followed(scene, outcome, &mut run) {
+        Err(failure @ Failure::Run(_)) => failure,
+        ended => return ended,
+    };
+    let Some(t) = outcome.stiff else { return Err(failure) };
+    scene.turn(t);
+    let mut anew = |scene: &Scene| {
+        *outcome = Outcome::default();
+        followed(scene, outcome, &mut run)
+    };
+    match anew(scene) {
+        Err(Failure::Run(_)) => {
+            *scene = before;
+            scene.approach.leaves_stiff = false;
+            anew(scene)
+        }
+        ended => ended,
+    }
+}
+
+fn followed(
     scene: &Scene,
     outcome: &mut Outcome,
-    run: impl FnOnce(&mut dyn FnMut(Event<'_>)) -> Result<Summary, Failure>,
+    run: &mut impl FnMut(&Scene, &mut dyn FnMut(Event<'_>)) -> Result<Summary, Failure>,
 ) -> Result<(), Failure> {
     let mut progress = Progress::new(scene.settings.t_end);
-    let Outcome { samples, occurrences, linear, stopped, .. } = outcome;
+    let Outcome { samples, occurrences, linear, stopped, stiff, .. } = outcome;
     let mut tell = |event: Event<'_>| match event {
         Event::Sample(sample) => samples.push(sample.clone()),
         Event::Occurred(found) => occurrences.push(*found),
         Event::Linear(found) => *linear = Some(found.clone()),
         Event::Stopped(t, state) => *stopped = Some((t, state.to_vec())),
+        Event::Stiff(t) => *stiff = Some(t),
         Event::Forecast(forecast) => progress.foretold(&forecast),
         Event::Progress(t) => progress.reached(t),
     };
-    let summary = run(&mut tell);
+    let summary = run(scene, &mut tell);
     progress.finish();
     outcome.summary = summary.map_err(|failure| with_link(scene, outcome, failure))?;
     Ok(())

@@ -74,6 +74,10 @@ fn head(scene: &Scene, run: &Summary, last: &Sample) -> String {
         engine(scene),
         scene.precision.name()
     );
+    let chosen = scene.chosen.to_string();
+    if !chosen.is_empty() {
+        let _ = writeln!(text, "chosen: {chosen}");
+    }
     text += &mechanism(scene);
     for parameter in &scene.model.parameters {
         let _ = writeln!(text, "parameter {} = {:?}", parameter.name, gyro_model::to_f64(&parameter.value));

@@ -43,6 +43,8 @@ pub(crate) struct Outcome {
     pub(crate) linear: Option<Linear>,
     /// The last state before a failure, and its time.
     pub(crate) stopped: Option<(f64, Vec<f64>)>,
+    /// When it was found to be stiff for its method.
+    pub(crate) stiff: Option<f64>,
     /// Of a program of generated code.
     pub(crate) took: Took,
 }
@@ -83,7 +85,7 @@ fn companions(scene: &Scene) -> Vec<Scene> {
         // Only generated code has joint coordinates.
         let has_them = approach.coordinates != Coordinates::Joint || scene.engine.is_generated();
         let engine = if has_them { scene.engine } else { Engine::Generated };
-        let approach = Approach { patience: None, ..approach };
+        let approach = Approach { patience: None, leaves_stiff: false, ..approach };
         Scene { precision: Precision::F64, engine, settings, approach, ..scene.clone() }
     };
     gyro_runner::companions(&scene.settings, &scene.approach).into_iter().map(double).collect()

@@ -258,7 +258,8 @@ pub struct JointStartSpec {
     pub is_rough: bool,
 }
 
-/// How a run is to be made, all in seconds.
+/// How a run is to be made, all times in seconds. Of what the model file does not say there is nothing here: that is
+/// chosen by whoever makes the run. Words are those that the command line takes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
     /// Length of the run.
@@ -269,17 +270,14 @@ pub struct Simulation {
     pub correct_every: f64,
     /// Interval between samples; a thousandth of the run where the model file gives none.
     pub sample_every: f64,
-    /// Algorithm.
-    pub method: Method,
-}
-
-/// The two algorithms of the paper's section 5.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Integration of eq. (17) alone.
-    Direct,
-    /// With coordinate partitioning: eqs. (18) to (20) after every correction interval.
-    Partitioned,
+    /// What is integrated: `joint` or `maximal`.
+    pub coordinates: Option<&'static str>,
+    /// The integrator: `rk4`, `tsit5`, `dop853` or `rodas4`.
+    pub method: Option<&'static str>,
+    /// Error tolerated in each step, relative and absolute alike; never with `rk4`.
+    pub tolerance: Option<f64>,
+    /// How constraints are kept: `partition`, `closed-form`, `mass-weighted`, `baumgarte=RATE` or `none`.
+    pub correction: Option<String>,
 }
 
 /// What one scalar constraint row belongs to and measures.

@@ -26,6 +26,9 @@ pub struct Approach {
     pub patience: Option<f64>,
     /// Whether pivots are to be looked at, and the motion to be linearised about where it ends.
     pub examine: bool,
+    /// Whether a run by an explicit method ends where it turns out to be stiff, and says so
+    /// ([`Event::Stiff`](crate::Event::Stiff)), so that it can be made by another method.
+    pub leaves_stiff: bool,
 }
 
 /// The method.

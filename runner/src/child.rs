@@ -60,6 +60,7 @@ pub fn answer<M: Partition<Scalar: Real> + Clone + 'static>(
         Event::Occurred(found) => write(output, &Reply::Occurred(*found)),
         Event::Linear(linear) => write(output, &Reply::Linear(linear.clone())),
         Event::Stopped(t, state) => write(output, &Reply::Stopped(t, state.to_vec())),
+        Event::Stiff(t) => write(output, &Reply::Stiff(t)),
         Event::Forecast(forecast) => write(output, &Reply::Forecast(forecast)).and_then(|()| output.flush()),
         Event::Progress(t) => write(output, &Reply::Progress(t)).and_then(|()| output.flush()),
     };

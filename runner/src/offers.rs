@@ -81,7 +81,8 @@ impl Offers {
         Some(words.to_owned())
     }
 
-    fn refused_method(&self, approach: &Approach) -> Option<String> {
+    /// Why a run cannot be made by its method, in its coordinates, with its correction.
+    pub fn refused_method(&self, approach: &Approach) -> Option<String> {
         let words = match (approach.coordinates, approach.correction) {
             _ if self.touches && !self.joint_space => {
                 "rigid stops and friction that sticks need joint coordinates: they are for generated code (--engine \

@@ -35,6 +35,8 @@ pub enum Reply {
     Linear(Linear),
     /// The last state before the run fails, and its time, s.
     Stopped(f64, Vec<f64>),
+    /// The run fails at this time, s, as the scene is stiff for its method.
+    Stiff(f64),
     /// The run has reached this time, s.
     Progress(f64),
     /// How long the run will take.
@@ -122,6 +124,7 @@ mod tests {
                     budget: correct_every.map(|_| 7),
                     patience: correct_every,
                     examine: correct_every.is_some(),
+                    leaves_stiff: correct_every.is_none(),
                 },
                 parameters: vec![1.0 / 7.0],
                 start: Start {

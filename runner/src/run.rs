@@ -68,6 +68,9 @@ pub enum Event<'a> {
     Stopped(f64, &'a [f64]),
     /// The linearisation at the end, if it is asked for and there is one.
     Linear(&'a Linear),
+    /// The run fails at this time, s, as the scene is stiff for its method; it was to be left then
+    /// ([`Approach::leaves_stiff`]).
+    Stiff(f64),
     /// How long the run will take. Comes before a long one of fixed steps.
     Forecast(Forecast),
     /// The run has reached this time, s. Comes every now and then, for a progress bar.
@@ -150,6 +153,10 @@ pub fn run_by<M: Partition<Scalar: Real> + Clone + 'static>(
             let words = describe_in(run.mechanism, layout(run.mechanism, builder, approach), error)
                 + &passed.map_or(String::new(), |passage| behind(run.mechanism, &passage));
             let plan = Plan { settings: &settings, approach, offers: &offers };
+            if let (Some(Error::Stiff { t, .. }), true) = (solver, approach.leaves_stiff) {
+                (told.tell)(Event::Stiff(t))?;
+                return Err(Failure::run(words));
+            }
             // The steps' length is asked about only where stability may limit it.
             let asks = matches!(solver, Some(Error::Stiff { .. } | Error::TooManySteps { .. }));
             if asks && builder.leaves_to_explain() {
@@ -290,6 +297,7 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     watches: Watches<M::Scalar>,
     paths: Paths,
     steps_at_once: u64,
+    leaves_stiff: bool,
     /// Fixed steps that may yet be taken; under error control the solver counts them.
     budget: u64,
     /// The maximal state when it was last looked at.
@@ -325,6 +333,7 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
                 STEPS_BETWEEN_READINGS
             },
             paths,
+            leaves_stiff: approach.leaves_stiff,
             budget: approach.budget.unwrap_or(u64::MAX),
             turns: Turns::new(mechanism, Scalar::constant(0.0), &y, &angles),
             read_at: 0.0,

@@ -86,29 +86,54 @@ enum Between {
     Smooth,
 }
 
-/// How a run is made unless told otherwise.
+/// How a run is made unless told otherwise. What is not said here is chosen: joint coordinates where there are any, and
+/// error control.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
 #[expect(dead_code, reason = "a description")]
 struct Simulation {
     /// Length of the run, s.
     t_end: Option<Plain>,
-    /// Largest step of the integrator, s.
+    /// Steps of fixed length are at most so long, s: those of method "rk4".
     step: Option<Plain>,
-    /// Interval between corrections, s.
+    /// Interval between corrections at fixed steps, s.
     correct_every: Option<Plain>,
     /// Interval between samples, s.
     sample_every: Option<Plain>,
+    coordinates: Option<Coordinates>,
     method: Option<Method>,
+    /// Error tolerated in each step, relative and absolute alike.
+    tolerance: Option<Plain>,
+    /// How constraints are kept in maximal coordinates: partition, closed-form, mass-weighted, baumgarte=RATE or none.
+    #[schemars(regex(pattern = "^(partition|closed-form|mass-weighted|none|baumgarte=.+)$"))]
+    correction: Option<String>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "snake_case")]
+#[expect(dead_code, reason = "a description")]
+enum Coordinates {
+    /// Those of the joints alone.
+    Joint,
+    /// Positions and Euler parameters of all bodies.
+    Maximal,
 }
 
 #[derive(JsonSchema)]
 #[schemars(rename_all = "snake_case")]
 #[expect(dead_code, reason = "a description")]
 enum Method {
-    /// Coordinate partitioning.
+    /// Kutta's method of order 4, in steps of fixed length.
+    Rk4,
+    /// Tsitouras's pair of orders 5 and 4, under error control.
+    Tsit5,
+    /// Dormand and Prince's method of order 8, under error control.
+    Dop853,
+    /// Rodas, L-stable of order 4, under error control: for stiff scenes.
+    Rodas4,
+    /// An earlier word for correction = "partition".
     Partitioned,
-    /// Integration of eq. (17) alone.
+    /// An earlier word for correction = "none".
     Direct,
 }
 

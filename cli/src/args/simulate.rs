@@ -1,14 +1,16 @@
 //! The arguments of `simulate`.
 
 use clap::{Args, ValueEnum};
-use gyro_model::{Direction, Method, Rational, parse_decimal};
+use gyro_model::{Direction, Rational, parse_decimal};
 use gyro_runner::{Between, Coordinates, Correction, Integrator, When};
 use std::path::PathBuf;
 
 /// Simulate a model
 ///
 /// Prints a summary and writes a CSV file and plots. Settings that no option gives are taken from the table
-/// `simulation` of the model file. If an option is given twice, the last one counts. All times are in seconds.
+/// `simulation` of the model file, and what that does not give is chosen: joint coordinates where there are any, and
+/// error control. The summary says what was chosen. If an option is given twice, the last one counts. All times are in
+/// seconds.
 #[derive(Clone, Debug, Args)]
 #[command(
     args_override_self = true,
@@ -16,7 +18,8 @@ use std::path::PathBuf;
   {program} simulate models/gyroscope.toml
   {program} simulate models/gyroscope.toml --engine assembled --t-end 10
   {program} simulate models/gyroscope.toml --method direct --step 2e-4 --out /tmp/direct
-  {program} simulate models/gyroscope.toml --integrator dop853 --tolerance 1e-9 --coordinates joint --verify
+  {program} simulate models/four-bar.toml --verify
+  {program} simulate models/four-bar.toml --coordinates maximal --method rk4 --step 1e-4
   {program} simulate models/gyroscope.toml --linearize 0.5 --json
   {program} simulate my-gimbal.toml --set rotor_mass=0.085 --json
   {program} simulate my-gimbal.toml --input motor=torque.csv --input brake=0.01
@@ -41,35 +44,37 @@ pub struct SimulateArgs {
     /// Length of the run
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) t_end: Option<f64>,
-    /// Largest step of the integrator; intervals are divided into equal steps
+    /// Largest step of steps of fixed length; intervals are divided into equal steps
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) step: Option<f64>,
-    /// Interval between corrections of the dependent coordinates
+    /// Interval between corrections of the dependent coordinates, at steps of fixed length in maximal coordinates
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) correct_every: Option<f64>,
-    /// Integration alone, or with coordinate partitioning
-    #[arg(long, value_enum, overrides_with = "correction")]
+    /// The integrator, as --integrator; or a short word for a correction: partitioned (partition) or direct (none)
+    #[arg(long, value_name = "NAME", value_parser = method)]
     pub(crate) method: Option<MethodName>,
-    /// The integrator: rk4 (fixed steps), tsit5, dop853, or rodas4 for stiff scenes
-    #[arg(long, value_name = "NAME", value_parser = integrator, default_value = "rk4")]
-    pub(crate) integrator: Integrator,
-    /// Error tolerance of each step, relative and absolute; the step size is then chosen automatically
+    /// The integrator: rk4 (fixed steps), tsit5, dop853, or rodas4 for stiff scenes [default: the model file's; else
+    /// rk4 with --step or --correct-every, and dop853 or, where the scene is stiff, rodas4 without]
+    #[arg(long, value_name = "NAME", value_parser = integrator)]
+    pub(crate) integrator: Option<Integrator>,
+    /// Error tolerance of each step, relative and absolute; steps are then as long as it allows [default: the model
+    /// file's; else 1e-9 unless steps are fixed, by rk4, --step or --correct-every]
     #[arg(long, value_name = "TOL", value_parser = tolerance, allow_hyphen_values = true, conflicts_with = "step")]
     pub(crate) tolerance: Option<f64>,
     /// What is integrated: positions and Euler parameters of all bodies, or joint coordinates (generated code
-    /// only)
-    #[arg(long, value_name = "maximal|joint", value_parser = coordinates, default_value = "maximal")]
-    pub(crate) coordinates: Coordinates,
-    /// How constraints are enforced: partition, closed-form (generated code with joint coordinates), mass-weighted,
-    /// baumgarte=RATE, none [default: the model file's]
+    /// only) [default: the model file's; else maximal with an option of corrections, and joint where there are any]
+    #[arg(long, value_name = "maximal|joint", value_parser = coordinates)]
+    pub(crate) coordinates: Option<Coordinates>,
+    /// How constraints are enforced in maximal coordinates: partition, closed-form (generated code with joint
+    /// coordinates), mass-weighted, baumgarte=RATE, none [default: the model file's, else partition]
     #[arg(long, value_name = "NAME", value_parser = correction)]
     pub(crate) correction: Option<Correction>,
-    /// When constraints are corrected: steps=K or violation=SIZE [default: --correct-every; every step with
-    /// --tolerance]
+    /// When constraints are corrected: steps=K or violation=SIZE [default: --correct-every; every step under error
+    /// control]
     #[arg(long, value_name = "WHEN", value_parser = when, overrides_with = "correct_every")]
     pub(crate) correct_when: Option<When>,
-    /// Maximum number of steps [default: 10 million with --tolerance]. A run with fixed steps that would take more than
-    /// an hour needs a budget
+    /// Maximum number of steps [default: 10 million under error control]. A run with fixed steps that would take more
+    /// than an hour needs a budget
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..), allow_hyphen_values = true)]
     pub(crate) budget: Option<u64>,
     /// Run a second time with a finer step or tolerance and report how far the result can be trusted
@@ -82,7 +87,7 @@ pub struct SimulateArgs {
     /// Number type of the run
     #[arg(long, value_enum, default_value_t = Precision::F64)]
     pub(crate) precision: Precision,
-    /// Interval between samples [default: the model file's, on the nearest whole number of corrections]
+    /// Interval between samples [default: the model file's, at fixed steps on the nearest whole number of corrections]
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) every: Option<f64>,
     /// Value of one of the model's parameters; may be given several times. The start is assembled again
@@ -139,10 +144,11 @@ pub(crate) enum Effort {
     Full,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+/// What `--method` names.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MethodName {
-    Direct,
-    Partitioned,
+    By(Integrator),
+    Kept(Correction),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -156,9 +162,34 @@ impl SimulateArgs {
     pub(crate) fn engine(&self) -> Engine {
         self.engine.unwrap_or(Engine::Generated)
     }
+
+    /// The integrator that was asked for.
+    pub(crate) fn integrator(&self) -> Option<Integrator> {
+        self.integrator.or(match self.method {
+            Some(MethodName::By(integrator)) => Some(integrator),
+            _ => None,
+        })
+    }
+
+    /// The correction that was asked for.
+    pub(crate) fn correction(&self) -> Option<Correction> {
+        self.correction.or(match self.method {
+            Some(MethodName::Kept(correction)) => Some(correction),
+            _ => None,
+        })
+    }
 }
 
 impl Engine {
+    /// Of generated code, the one that answers first.
+    pub(crate) fn quickest() -> Self {
+        #[cfg(feature = "jit")]
+        let engine = Self::Jit;
+        #[cfg(not(feature = "jit"))]
+        let engine = Self::Generated;
+        engine
+    }
+
     /// Whether it computes what the generator derives.
     pub(crate) fn is_generated(self) -> bool {
         !matches!(self, Self::Assembled | Self::Dense | Self::Recursive)
@@ -192,15 +223,6 @@ impl From<Effort> for gyro_codegen::Effort {
         match effort {
             Effort::Quick => Self::Quick,
             Effort::Full => Self::Full,
-        }
-    }
-}
-
-impl From<MethodName> for Method {
-    fn from(name: MethodName) -> Self {
-        match name {
-            MethodName::Direct => Self::Direct,
-            MethodName::Partitioned => Self::Partitioned,
         }
     }
 }
@@ -271,6 +293,16 @@ pub(crate) fn table(text: &str) -> (PathBuf, Option<Between>) {
         Some((PathBuf::from(file.trim()), Some(*between)))
     });
     found.unwrap_or_else(|| (PathBuf::from(text), None))
+}
+
+fn method(text: &str) -> Result<MethodName, String> {
+    match text {
+        "partitioned" => Ok(MethodName::Kept(Correction::Partition)),
+        "direct" => Ok(MethodName::Kept(Correction::None)),
+        _ => text.parse().map(MethodName::By).map_err(|()| {
+            "rk4, tsit5, dop853, rodas4, partitioned or direct was expected".to_owned()
+        }),
+    }
 }
 
 fn integrator(text: &str) -> Result<Integrator, String> {

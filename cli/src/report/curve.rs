@@ -117,6 +117,7 @@ impl Curve {
             budget,
             patience: None,
             examine: false,
+            leaves_stiff: false,
         }
     }
 }

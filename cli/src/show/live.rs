@@ -18,10 +18,7 @@ use serde_json::Value;
 const TOLERANCE: f64 = 1e-9;
 
 /// The module of a scene, proved, compiled, and what the page has to know to run it.
-pub(super) fn live(
-    scene: &Scene,
-    (integrator, tolerance): (Integrator, Option<f64>),
-) -> Result<Live, Failure> {
+pub(super) fn live(scene: &Scene) -> Result<Live, Failure> {
     let model = Model { functions: Some(vec!["solvers".to_owned()]), ..scene.page.clone() };
     if let Some(what) = gyro_codegen::lacks_joint_coordinates(&model) {
         let name = &model.name;
@@ -51,12 +48,12 @@ pub(super) fn live(
     Ok(Live {
         about: serde_json::from_str(&exported.about).map_err(|e| broken(e.to_string()))?,
         module: compiled(&module.name, &exported)?,
-        method: match integrator {
+        method: match scene.approach.integrator {
             Integrator::Tsit5 => "tsit5",
             Integrator::Rodas4 => "rodas4",
             _ => "dop853",
         },
-        tolerance: tolerance.unwrap_or(TOLERANCE),
+        tolerance: scene.approach.tolerance.unwrap_or(TOLERANCE),
         parameters: settings(&scene.model.parameters, |_| ""),
         inputs: inputs(scene),
         slopes: slopes(scene),

@@ -1,12 +1,13 @@
 //! A study file with its model.
 
 use super::vocabulary::vocabulary;
-use crate::args::{Effort, Precision, SimulateArgs};
+use crate::args::{Effort, Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::scene::{self, Scene};
-use crate::{args, events, files, inputs};
+use crate::verdict::Outcome;
+use crate::{args, events, files, inputs, remarks, simulate};
 use gyro_model::Model;
-use gyro_runner::Input;
+use gyro_runner::{Approach, Coordinates, Input, Integrator};
 use gyro_sweep::study::{self, Files, Study, Unreadable, Vocabulary};
 use std::path::{Path, PathBuf};
 
@@ -70,11 +71,37 @@ impl Loaded {
             Err(Unreadable::Model(failure)) => return Err(failure),
         };
         let mut scene = Scene::new(&arguments(&study, folder.join(&study.model)))?;
+        settle(&study, &mut scene)?;
         scene.start.watches.clear();
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         Ok(Self { study, scene, text, path: files::shown(path), place, name })
     }
+}
+
+/// Has all scenarios run by one method: where that is chosen, by the one that the model file's own run takes.
+fn settle(study: &Study, scene: &mut Scene) -> Result<(), Failure> {
+    if !study.keep.by.is_empty() {
+        let asks = "sensitivities are computed in joint coordinates, by explicit methods";
+        let Approach { coordinates, integrator, .. } = scene.approach;
+        if coordinates != Coordinates::Joint || integrator == Integrator::Rodas4 {
+            let help = "run = { coordinates = \"joint\", integrator = \"dop853\" } in the study";
+            return Err(Failure::Usage(format!(
+                "{asks}: the run would be by {integrator} in {coordinates} ones; write {help}"
+            )));
+        }
+    } else if scene.approach.leaves_stiff {
+        let mut own = Scene { engine: Engine::quickest(), effort: gyro_codegen::Effort::Quick, ..scene.clone() };
+        // Why it fails, if it does, scenarios say for themselves.
+        let _ = simulate::run(&mut own, &mut Outcome::default());
+        (scene.approach, scene.chosen) = (own.approach, own.chosen);
+    }
+    scene.approach.leaves_stiff = false;
+    let chosen = scene.chosen.to_string();
+    if !chosen.is_empty() {
+        remarks::note(&format!("chosen: {chosen}"));
+    }
+    Ok(())
 }
 
 /// How `simulate` would be asked for a run of the study's model.

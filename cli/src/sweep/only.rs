@@ -26,5 +26,5 @@ pub(super) fn only(loaded: &Loaded, k: u64, folder: &Path) -> Result<(), Failure
     scene.model = starts::model(&scene.page, &plan.targets, &values).map_err(wrong)?;
     scene.start = starts::assembled(&scene.page, &plan.targets, &values).map_err(wrong)?;
     scene.start.inputs = plan.inputs(&values);
-    simulate_scene(&scene, &folder.join(format!("scenario-{k}")))
+    simulate_scene(scene, &folder.join(format!("scenario-{k}")))
 }

@@ -25,6 +25,7 @@ mod references;
 mod section;
 mod seen;
 mod shapes;
+mod simulation;
 mod start;
 mod synonyms;
 mod table;

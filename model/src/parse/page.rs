@@ -4,14 +4,15 @@ use num_traits::One;
 use toml::de::DeTable;
 
 use super::names;
-use super::numbers::{plain_number, positive};
+use super::numbers::plain_number;
 use super::reader::Reader;
 use super::section::{Section, keyword};
 use super::{
     bodies, contacts, controllers, couplings, events, forces, joints, outputs, parameters, point_masses,
+    simulation,
 };
 use crate::validate::{Owner, Place};
-use crate::{Between, Method, Model, Rational, Simulation, lines, to_f64};
+use crate::{Between, Model, lines};
 
 const KEYS: [&str; 17] = [
     "format",
@@ -32,8 +33,6 @@ const KEYS: [&str; 17] = [
     "event",
     "contact",
 ];
-const SIMULATION_KEYS: [&str; 5] = ["t_end", "step", "correct_every", "sample_every", "method"];
-const METHODS: [(&str, Method); 2] = [("partitioned", Method::Partitioned), ("direct", Method::Direct)];
 
 /// Reads everything. Where something is wrong the reader knows, and a default stands in the model.
 pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
@@ -45,7 +44,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let gravity = page.vector_or(reader, "gravity", [0; 3]);
     let counts_work = page.get("count_work").and_then(|item| item.flag(reader)).unwrap_or(true);
     let functions = functions(reader, &page);
-    let simulation = simulation(reader, &page);
+    let simulation = simulation::read(reader, &page);
     let (mut bodies, point_masses): (Vec<_>, Vec<_>) = bodies::read(reader, &page).into_iter().unzip();
     let joints = joints::read(reader, &page);
     let couplers = couplings::couplers(reader, &page);
@@ -127,30 +126,4 @@ fn functions(reader: &mut Reader<'_>, page: &Section<'_>) -> Option<Vec<String>>
         item.wrong_type(reader, "an array of names", "functions = [\"joint\", \"jacobian\"]");
     }
     names
-}
-
-/// The simulation settings with their defaults: one second in steps of a millisecond, a correction every five steps.
-fn simulation(reader: &mut Reader<'_>, page: &Section<'_>) -> Simulation {
-    let example = "[simulation] on a line of its own, then t_end = 1";
-    let empty = DeTable::new();
-    let table = page.get("simulation").and_then(|item| item.table(reader, example)).unwrap_or(&empty);
-    let section = Section::open(reader, Owner::Simulation, "[simulation]", table, &SIMULATION_KEYS);
-    let ratio = |numerator: i64, denominator: i64| Rational::new(numerator.into(), denominator.into());
-    let t_end = positive(reader, &section, "t_end").unwrap_or_else(Rational::one);
-    let step = positive(reader, &section, "step").unwrap_or_else(|| ratio(1, 1000));
-    let correct_every = positive(reader, &section, "correct_every").unwrap_or_else(|| &step * ratio(5, 1));
-    let sample_every = positive(reader, &section, "sample_every").unwrap_or_else(|| &t_end * ratio(1, 1000));
-    Simulation {
-        t_end: to_f64(&t_end),
-        step: to_f64(&step),
-        correct_every: to_f64(&correct_every),
-        sample_every: to_f64(&sample_every),
-        method: method(reader, &section),
-    }
-}
-
-fn method(reader: &mut Reader<'_>, section: &Section<'_>) -> Method {
-    let Some(item) = section.get("method") else { return Method::Partitioned };
-    let method = item.choice(reader, ("method", &METHODS));
-    method.unwrap_or(Method::Partitioned)
 }

@@ -4,7 +4,7 @@
 //! One word may stand for several of ours; which is meant depends on the keys that are known in its place.
 
 /// Words of others, each with those of ours that it may stand for, the likeliest first.
-const WORDS: [(&[&str], &[&str]); 64] = [
+const WORDS: [(&[&str], &[&str]); 67] = [
     // Kinds of joint.
     (&["hinge", "pin", "continuous", "rotary", "rotational", "rotation", "pivot_joint", "r"], &["revolute"]),
     (&["slide", "slider", "sliding", "translational", "linear", "prism", "p"], &["prismatic"]),
@@ -58,6 +58,9 @@ const WORDS: [(&[&str], &[&str]); 64] = [
     (&["dt", "timestep", "time_step", "h", "max_step_size"], &["step"]),
     (&["duration", "end_time", "stop_time", "stoptime", "t_final", "tend", "t_stop", "time"], &["t_end"]),
     (&["sample_time", "output_step", "dt_out"], &["sample_every"]),
+    (&["integrator", "solver", "algorithm"], &["method"]),
+    (&["rtol", "atol", "reltol", "abstol", "accuracy", "precision"], &["tolerance"]),
+    (&["stabilization", "stabilisation", "projection", "constraint_correction"], &["correction"]),
     // Keys of bodies.
     (&["m", "weight"], &["mass"]),
     (

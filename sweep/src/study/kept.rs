@@ -120,10 +120,10 @@ impl Kept {
                     "remove this, or take `between` out of the model file's table",
                 ],
             })
-        } else if run.coordinates != Coordinates::Joint {
+        } else if run.coordinates == Some(Coordinates::Maximal) {
             let help = "write run = { coordinates = \"joint\" }";
             Some(["sensitivities are computed in joint coordinates", "in maximal ones", help])
-        } else if run.integrator == Integrator::Rodas4 {
+        } else if run.integrator == Some(Integrator::Rodas4) {
             let help = "write integrator = \"dop853\", \"tsit5\" or \"rk4\"";
             Some(["sensitivities are computed by explicit methods", "by rodas4", help])
         } else {

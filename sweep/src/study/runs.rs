@@ -3,7 +3,7 @@
 use super::reader::{Reader, Section};
 use gyro_runner::{Coordinates, Correction, Integrator};
 
-/// Options of a run; what is not given is the model file's, as with `simulate`.
+/// Options of a run; what is not given is the model file's or chosen, as with `simulate`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RunOptions {
     /// Length of the run, s.
@@ -17,9 +17,9 @@ pub struct RunOptions {
     /// Error tolerated in each step.
     pub tolerance: Option<f64>,
     /// The method.
-    pub integrator: Integrator,
+    pub integrator: Option<Integrator>,
     /// What is integrated.
-    pub coordinates: Coordinates,
+    pub coordinates: Option<Coordinates>,
     /// How constraints are kept.
     pub correction: Option<Correction>,
     /// Steps after which a scenario is given up.
@@ -76,8 +76,8 @@ pub(super) fn read(reader: &mut Reader, whole: &Section<'_>) -> Option<RunOption
         correct_every,
         every,
         tolerance,
-        integrator: integrator.unwrap_or_default(),
-        coordinates: coordinates.unwrap_or_default(),
+        integrator,
+        coordinates,
         correction,
         budget,
     })
