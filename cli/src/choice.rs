@@ -69,7 +69,8 @@ impl Chosen {
 
 impl fmt::Display for Chosen {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let parts: Vec<&str> = [&self.coordinates, &self.method].into_iter().flatten().map(String::as_str).collect();
+        let parts: Vec<&str> =
+            [&self.coordinates, &self.method].into_iter().flatten().map(String::as_str).collect();
         f.write_str(&parts.join("; "))
     }
 }
@@ -105,7 +106,9 @@ impl Choice<'_> {
         let lacks = of_page == Some(Coordinates::Joint) && !offers.joint_space && args.engine.is_some();
         let (found, why) = match (args.coordinates, of_page) {
             (Some(coordinates), _) => return (coordinates, None),
-            (None, Some(coordinates)) if offers.touches || !(is_corrected || lacks) => return (coordinates, None),
+            (None, Some(coordinates)) if offers.touches || !(is_corrected || lacks) => {
+                return (coordinates, None);
+            }
             _ if offers.touches => (Coordinates::Joint, "contacts need them".to_owned()),
             _ if is_corrected => (Coordinates::Maximal, "a correction is asked for".to_owned()),
             _ if !offers.joint_space => (Coordinates::Maximal, self.without_joints()),
@@ -164,3 +167,6 @@ impl Choice<'_> {
         approach.tolerance.is_some() && self.offers.refused_method(&turned).is_none()
     }
 }
+
+#[cfg(test)]
+mod tests;

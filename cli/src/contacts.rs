@@ -58,13 +58,14 @@ pub(crate) fn refuse(model: &Model, what: &str) -> Result<(), Failure> {
 /// Refuses friction that depends on reactions which are not unique.
 pub(crate) fn refuse_shared_reactions(model: &Model) -> Result<(), Failure> {
     for contact in &model.contacts {
-        let Some(output) = contact.reaction.map(|output| &model.outputs[output]) else { continue };
+        if contact.reaction.is_none() {
+            continue;
+        }
         let owner = RowOwner::Joint(contact.on.joint);
         let is_shared =
             |dropped: &&RedundantRow| dropped.row.owner == owner || dropped.shared_with.contains(&owner);
-        if remarks::is_not_unique(model, &output.kind)
-            && let Some(dropped) = model.redundant.iter().find(is_shared)
-        {
+        let is_not_unique = remarks::not_unique(model, contact.on.joint).contains(&true);
+        if is_not_unique && let Some(dropped) = model.redundant.iter().find(is_shared) {
             return Err(Failure::Usage(format!(
                 "the friction of contact `{}` depends on the reaction of {}, which is not unique: {}; choose kinds of joints \
                  that leave free what others hold, or give friction a constant level",

@@ -51,7 +51,7 @@ pub fn text_of(path: &Path) -> Result<String, Failure> {
 
 /// What is to be said of a model: rows that are dropped.
 pub fn warnings(model: &Model) -> Vec<String> {
-    model.redundant.iter().map(|row| remarks::describe(model, row)).collect()
+    remarks::dropped(model).into_iter().collect()
 }
 
 /// The model file of a robot in the Unified Robot Description Format, by the options of `import`; and what of it has no

@@ -21,7 +21,7 @@ pub(crate) fn report_redundant(model: &Model, page: &str, strict: bool) -> Resul
         let rows = count(lines.len() as u64, "redundant constraint row");
         return Err(Failure::Usage(format!("{page} has {rows}, refused by --strict:\n{}", lines.join("\n"))));
     }
-    lines.iter().for_each(|line| warn(&format!("{page}: {line}")));
+    dropped(model).iter().for_each(|words| warn(&format!("{page}: {words}")));
     Ok(())
 }
 
@@ -71,10 +71,51 @@ pub(crate) fn describe(model: &Model, dropped: &RedundantRow) -> String {
     format!("{} depends on {with} and is dropped; how these share a load is not unique", model.row_named(row))
 }
 
-/// Whether an output is made of multipliers that are not unique.
-pub(crate) fn is_not_unique(model: &Model, output: &OutputKind) -> bool {
+/// One sentence about all dropped rows: which they are, and what of reactions is not unique without them.
+pub(crate) fn dropped(model: &Model) -> Option<String> {
+    let rows: Vec<String> = model.redundant.iter().map(|dropped| model.row_named(dropped.row)).collect();
+    let (depends, is) = match rows.len() {
+        0 => return None,
+        1 => ("depends", "is"),
+        _ => ("depend", "are"),
+    };
+    let names = OutputKind::Reaction { joint: 0 }.columns();
+    let mut shared: Vec<(String, Vec<String>)> = Vec::new();
+    for (joint, described) in model.joints.iter().enumerate() {
+        let own = names.iter().zip(not_unique(model, joint)).filter(|(_, is_shared)| *is_shared);
+        let own: Vec<&str> = own.map(|((name, _), _)| *name).collect();
+        if own.is_empty() {
+            continue;
+        }
+        let (own, name) = (own.join(", "), format!("`{}`", described.name));
+        match shared.iter_mut().find(|(numbers, _)| *numbers == own) {
+            Some((_, joints)) => joints.push(name),
+            None => shared.push((own, vec![name])),
+        }
+    }
+    let loads: Vec<String> =
+        shared.iter().map(|(numbers, joints)| format!("{numbers} of {}", joints.join(", "))).collect();
+    let loads = if loads.is_empty() {
+        "all reactions are unique".to_owned()
+    } else {
+        format!("of the reactions these are not unique: {}", loads.join("; "))
+    };
+    Some(format!(
+        "{} {depends} on others and {is} dropped; the motion is the same, and {loads}",
+        rows.join(", ")
+    ))
+}
+
+/// Which numbers of a joint's reaction are not unique.
+pub(crate) fn not_unique(model: &Model, joint: usize) -> [bool; 6] {
+    let loads = model.redundant.iter().flat_map(|dropped| &dropped.loads).filter(|(of, _)| *of == joint);
+    loads.fold([false; 6], |all, (_, changed)| std::array::from_fn(|k| all[k] || changed[k]))
+}
+
+/// Whether a number of an output is made of multipliers that are not unique.
+pub(crate) fn is_not_unique(model: &Model, output: &OutputKind, number: usize) -> bool {
     let owner = match output {
-        OutputKind::Reaction { joint } => RowOwner::Joint(*joint),
+        OutputKind::Reaction { joint } => return not_unique(model, *joint)[number],
         OutputKind::Driver { driver } => RowOwner::Driver(*driver),
         _ => return false,
     };

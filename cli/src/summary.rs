@@ -207,12 +207,13 @@ fn outputs(model: &Model, last: &Sample) -> String {
     let mut rows = Vec::new();
     let mut values = last.outputs.iter();
     for output in &model.outputs {
-        for ((suffix, unit), value) in columns::output_columns(model, output).into_iter().zip(&mut values) {
+        let columns = columns::output_columns(model, output).into_iter().enumerate();
+        for ((number_of, (suffix, unit)), value) in columns.zip(&mut values) {
             let dot = if suffix.is_empty() { "" } else { "." };
             let cells =
                 [format!("{}{dot}{suffix}", output.name), format!("{} {unit}", number(*value, DIGITS))];
             let mut row = cells.map(|cell| cell.trim_end().to_owned()).to_vec();
-            if remarks::is_not_unique(model, &output.kind) {
+            if remarks::is_not_unique(model, &output.kind, number_of) {
                 row.push("not unique".to_owned());
             }
             rows.push(row);

@@ -89,7 +89,7 @@ const WHOLE: &str = r#"
 scenarios = 40
 block = 4
 sampling = "sobol"
-run = { t_end = 0.05, step = 1e-3, every = 0.01 }
+run = { coordinates = "maximal", t_end = 0.05, step = 1e-3, every = 0.01 }
 keep = { final = ["alpha", "energy"], series = ["beta"] }
 vary = [
   { parameter = "rotor_mass", uniform = [-0.01, 0.09] },

@@ -62,7 +62,7 @@ fn study(random: &mut Random) -> String {
     }
     let how = match (is_whole, random.below(3)) {
         // In maximal coordinates there are no lanes.
-        (true, _) => "step = 1e-3",
+        (true, _) => "coordinates = \"maximal\", step = 1e-3",
         (_, 0) => "coordinates = \"joint\", step = 2e-4",
         (_, 1) => "coordinates = \"joint\", tolerance = 1e-6, integrator = \"tsit5\"",
         _ => "coordinates = \"joint\", tolerance = 1e-6, integrator = \"dop853\", budget = 40",

@@ -313,6 +313,9 @@ pub struct RedundantRow {
     pub axes: PointAxes,
     /// Owners of the rows that it depends on, its own among them if they are: their multipliers are not unique.
     pub shared_with: Vec<RowOwner>,
+    /// Of each joint that takes part, by its index, which numbers of its reaction (three of the force, three of the
+    /// torque) the multipliers of this row could change at will: these are not unique.
+    pub loads: Vec<(usize, [bool; 6])>,
 }
 
 /// The axes along which coincident points are compared, paper eq. (7).

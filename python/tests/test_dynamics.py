@@ -59,7 +59,7 @@ def test_batches_have_the_bits_of_single_states(pendulum, gimbal, rows):
 
 def test_scipy_integrates_it(gimbal):
     integrate = pytest.importorskip("scipy.integrate")
-    run = gimbal.simulate(0.1, tolerance=1e-11)
+    run = gimbal.simulate(0.1, tolerance=1e-11, coordinates="joint")
     solved = integrate.solve_ivp(gimbal.f, (0, 0.1), gimbal.start(), method="DOP853", rtol=1e-11, atol=1e-11)
     assert np.abs(solved.y[:3, -1] - [run[name][-1] for name in ("alpha", "beta", "phi")]).max() < 1e-9
     assert np.abs(solved.y[:, -1] - run.state(0.1)).max() < 1e-6

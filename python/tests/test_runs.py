@@ -16,7 +16,7 @@ import gyro_sim as gyro
 
 
 def test_the_papers_second(gimbal):
-    run = gimbal.simulate(1.0, tolerance=1e-9)
+    run = gimbal.simulate(1.0, tolerance=1e-9, coordinates="joint")
     assert run.t[0] == 0 and run.t[-1] == 1
     assert run["alpha"].shape == run.t.shape and run["alpha"].dtype == np.float64
     # The closed form: precession at m g d / H = 0.1 rad/s.

@@ -299,9 +299,10 @@ fn method(text: &str) -> Result<MethodName, String> {
     match text {
         "partitioned" => Ok(MethodName::Kept(Correction::Partition)),
         "direct" => Ok(MethodName::Kept(Correction::None)),
-        _ => text.parse().map(MethodName::By).map_err(|()| {
-            "rk4, tsit5, dop853, rodas4, partitioned or direct was expected".to_owned()
-        }),
+        _ => text
+            .parse()
+            .map(MethodName::By)
+            .map_err(|()| "rk4, tsit5, dop853, rodas4, partitioned or direct was expected".to_owned()),
     }
 }
 

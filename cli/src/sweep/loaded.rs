@@ -91,7 +91,8 @@ fn settle(study: &Study, scene: &mut Scene) -> Result<(), Failure> {
             )));
         }
     } else if scene.approach.leaves_stiff {
-        let mut own = Scene { engine: Engine::quickest(), effort: gyro_codegen::Effort::Quick, ..scene.clone() };
+        let mut own =
+            Scene { engine: Engine::quickest(), effort: gyro_codegen::Effort::Quick, ..scene.clone() };
         // Why it fails, if it does, scenarios say for themselves.
         let _ = simulate::run(&mut own, &mut Outcome::default());
         (scene.approach, scene.chosen) = (own.approach, own.chosen);

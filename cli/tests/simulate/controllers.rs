@@ -10,7 +10,7 @@ const METHODS: [&[&str]; 6] = [
     &["--engine", "jit", "--integrator", "tsit5", "--tolerance", "1e-11", "--coordinates", "joint"],
     &["--engine", "jit", "--integrator", "dop853", "--tolerance", "1e-12", "--coordinates", "joint"],
     &["--engine", "jit", "--integrator", "rodas4", "--tolerance", "1e-9", "--coordinates", "joint"],
-    &["--engine", "jit", "--integrator", "dop853", "--tolerance", "1e-12"],
+    &["--engine", "jit", "--integrator", "dop853", "--tolerance", "1e-12", "--coordinates", "maximal"],
     &[
         "--engine",
         "assembled",

@@ -109,7 +109,7 @@ fn events_are_found_by_all_engines_and_methods() {
     let fine = ["--integrator", "dop853", "--tolerance", "1e-13"];
     let joint = ["--engine", "jit", "--coordinates", "joint"];
     for (args, close) in [
-        ([&["--engine", "jit"][..], &fine].concat(), 1e-11),
+        ([&["--engine", "jit", "--coordinates", "maximal"][..], &fine].concat(), 1e-11),
         ([&joint[..], &fine].concat(), 1e-11),
         ([&joint[..], &["--integrator", "tsit5", "--tolerance", "1e-9"]].concat(), 1e-7),
         ([&joint[..], &["--integrator", "rodas4", "--tolerance", "1e-9"]].concat(), 1e-6),

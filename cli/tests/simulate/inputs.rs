@@ -67,7 +67,8 @@ fn inputs_come_from_the_page_from_numbers_and_from_tables() {
     fs::write(folder.0.join("motor.toml"), MOTOR).unwrap();
     fs::write(folder.0.join("ramp.csv"), "t,torque\n0,0\n1,2\n").unwrap();
     let run = |args: &[&str]| {
-        json(&folder, &[&["motor.toml", "--engine", "assembled", "--every", "0.5"], args].concat())
+        let fixed = ["motor.toml", "--engine", "assembled", "--step", "1e-3", "--every", "0.5"];
+        json(&folder, &[&fixed[..], args].concat())
     };
     let constant = run(&["--input", "push=0.5"]);
     close(&constant["joints"]["shaft"]["rate"], 3.0 / 0.5 * 2.0);
@@ -80,7 +81,8 @@ fn inputs_come_from_the_page_from_numbers_and_from_tables() {
     close(&constant["outputs"]["spin"][5], 12.0);
     close(&constant["outputs"]["energies"][0], 0.25 * 144.0 + 0.25 + 0.25 + 0.05 * 49.0);
     assert_eq!(constant["degrees_of_freedom"], 4);
-    let generated = json(&folder, &["motor.toml", "--input", "torque=ramp.csv", "--every", "0.5"]);
+    let fixed = ["motor.toml", "--coordinates", "maximal", "--step", "1e-3", "--every", "0.5"];
+    let generated = json(&folder, &[&fixed[..], &["--input", "torque=ramp.csv"]].concat());
     // The ramp is held over each of its thousand steps, then stays: Σ 2 k/1000 · 1e-3 = 0.999, and 2 N·m for a second.
     let ramp = run(&["--input", "torque=ramp.csv"]);
     for run in [&ramp, &generated] {

@@ -84,7 +84,10 @@ const RUNS: [(&[&str], f64); 9] = [
         &["--engine", "assembled", "--integrator", "dop853", "--tolerance", "1e-11", "--correction", "none"],
         1e-9,
     ),
-    (&["--engine", "jit", "--integrator", "dop853", "--tolerance", "1e-11"], 1e-9),
+    (
+        &["--engine", "jit", "--coordinates", "maximal", "--integrator", "dop853", "--tolerance", "1e-11"],
+        1e-9,
+    ),
     (
         &[
             "--engine",
@@ -325,7 +328,7 @@ fn random_driven_chains_agree_and_keep_their_ledger() {
         let run = |args: &[&str]| json(&folder, &[&["chain.toml"], &how[..], args].concat());
         let [assembled, maximal, joint] = [
             run(&["--engine", "assembled"]),
-            run(&["--engine", "jit"]),
+            run(&["--engine", "jit", "--coordinates", "maximal"]),
             run(&["--engine", "jit", "--coordinates", "joint"]),
         ];
         for k in 0..3 {

@@ -55,6 +55,8 @@ second = { body = "cart" }
 stiffness = 1
 free_length = 0.3
 [simulation]
+coordinates = "maximal"
+method = "rk4"
 t_end = 2
 step = 0.25
 correct_every = 0.25
@@ -127,7 +129,8 @@ fn what_cannot_be_done_is_refused_by_one_code_and_leaves_no_folder() {
     let folder = Folder::new("refused");
     fs::write(folder.0.join("motor.toml"), dragged()).unwrap();
     fs::write(folder.0.join("drag.csv"), "t,drag\n0,1\n1,-0.5\n2,1\n").unwrap();
-    fs::write(folder.0.join("tiny.toml"), dragged().replace("step = 1e-3", "step = 1e-12")).unwrap();
+    fs::write(folder.0.join("tiny.toml"), dragged().replace("step = 1e-3", "method = \"rk4\"\nstep = 1e-12"))
+        .unwrap();
     fs::write(folder.0.join("ramp.csv"), "t,torque\n0,0\n1,2\n").unwrap();
     let assembled = ["motor.toml", "--engine", "assembled"];
     let controlled = ["--integrator", "dop853", "--tolerance"];
@@ -140,7 +143,7 @@ fn what_cannot_be_done_is_refused_by_one_code_and_leaves_no_folder() {
         (&["--correction", "closed-form"], "the closed form is for generated code with joint coordinates"),
         (&["--linearize", "0.5"], "--linearize is about joint coordinates"),
         (&["--integrator", "rodas4"], "rodas4 needs derivatives"),
-        (&["--tolerance", "1e-9"], "rk4 has no error estimate"),
+        (&["--integrator", "rk4", "--tolerance", "1e-9"], "rk4 has no error estimate"),
         (&[&controlled[..], &["nan"]].concat(), "a number above 0 and at most 1 was expected"),
         (&[&controlled[..], &["1e-16"]].concat(), "a tolerance of 1e-16 cannot be met"),
         (&[&controlled[..], &["1e-9", "--precision", "f32"]].concat(), "a tolerance of 1e-9 cannot be met"),

@@ -9,16 +9,8 @@ use super::section::{Item, Section};
 use crate::validate::Owner;
 use crate::{Rational, Simulation, to_f64};
 
-const KEYS: [&str; 8] = [
-    "t_end",
-    "step",
-    "correct_every",
-    "sample_every",
-    "coordinates",
-    "method",
-    "tolerance",
-    "correction",
-];
+const KEYS: [&str; 8] =
+    ["t_end", "step", "correct_every", "sample_every", "coordinates", "method", "tolerance", "correction"];
 
 const COORDINATES: [(&str, &str); 2] = [("joint", "joint"), ("maximal", "maximal")];
 

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use super::select::{INDEPENDENT, extend, outside};
 use super::trees::{Motions, TreeRows};
-use crate::assemble::projection::Configuration;
+use crate::assemble::projection::{Configuration, Scales};
 use crate::kinematics::{Kinematics, value_of};
 use crate::{Model, RowOwner};
 
@@ -23,6 +23,7 @@ const INSTANTS: usize = 16;
 pub(super) struct Poses<'a> {
     pub(super) model: &'a Model,
     pub(super) kinematics: &'a Kinematics,
+    pub(super) scales: &'a Scales,
     /// The first is the start, if the rank is full there.
     pub(super) at: Vec<&'a Configuration>,
     /// With point rows along global axes.
@@ -97,7 +98,7 @@ impl Poses<'_> {
     }
 
     /// The joint frame (f, g, h) on the first body, in columns.
-    fn first_frame(&self, joint: usize, at: &Configuration) -> Matrix3<f64> {
+    pub(super) fn first_frame(&self, joint: usize, at: &Configuration) -> Matrix3<f64> {
         let poses: Vec<_> = self.kinematics.poses(&at.q).iter().map(value_of).collect();
         Matrix3::from_columns(&self.kinematics.posed(joint, &poses).first.map(Vector3::from))
     }

@@ -1,6 +1,7 @@
 //! Rows of Φ that say what others say already: found by rank, at several poses of the mechanism.
 
 mod axes;
+mod loads;
 mod sample;
 mod select;
 mod trees;
@@ -10,7 +11,7 @@ use crate::kinematics::{Equation, Kinematics};
 use crate::{AssemblyError, Model, PointAxes, RedundantRow, Row, RowOwner, Start, Support, Tree};
 use axes::Poses;
 use sample::{Samples, samples};
-use select::{Selection, dependencies, generic, select};
+use select::{Selection, generic, idle, owners, select};
 use trees::TreeRows;
 
 /// What the rank of the constraint rows says about a mechanism.
@@ -76,8 +77,16 @@ pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
     let mut pose = 0..;
     jacobians.retain(|_| generic.contains(&pose.next().expect("endless")));
     let at = generic.iter().map(|&pose| &poses[pose]).collect();
-    let poses =
-        Poses { model, kinematics: &kinematics, at, jacobians, motions, trees: &trees, groups: &groups };
+    let poses = Poses {
+        model,
+        kinematics: &kinematics,
+        scales: &scales,
+        at,
+        jacobians,
+        motions,
+        trees: &trees,
+        groups: &groups,
+    };
     let (redundant, selection) = selected(poses);
     check_drivers(model, &redundant)?;
     check_later(
@@ -108,10 +117,13 @@ fn selected(mut poses: Poses<'_>) -> (Vec<RedundantRow>, Selection) {
         RowOwner::Joint(joint) if turning.contains(&joint) => PointAxes::FirstBody,
         _ => PointAxes::Global,
     };
-    let shared = dependencies(&selection, (&poses.motions, poses.trees), rows);
-    let dropped = selection.dropped.iter().map(|&row| rows[row]).zip(shared);
-    let redundant =
-        dropped.map(|(row, shared_with)| RedundantRow { row, axes: axes(row), shared_with }).collect();
+    let states = idle(&selection, (&poses.motions, poses.trees), rows.len());
+    let shared = (0..selection.dropped.len())
+        .map(|dropped| (owners(&states, dropped, rows), poses.loads(&states, dropped)));
+    let redundant = selection.dropped.iter().map(|&row| rows[row]).zip(shared);
+    let redundant = redundant
+        .map(|(row, (shared_with, loads))| RedundantRow { row, axes: axes(row), shared_with, loads })
+        .collect();
     (redundant, selection)
 }
 

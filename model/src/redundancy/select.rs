@@ -16,7 +16,7 @@ pub(super) const INDEPENDENT: f64 = 1e-7;
 const AS_GOOD: f64 = 0.5;
 
 /// Coefficients below this mean that a row takes no part in a dependency.
-const TAKES_PART: f64 = 1e-6;
+pub(super) const TAKES_PART: f64 = 1e-6;
 
 /// Rows that are kept and rows that depend on them, each in ascending order.
 #[derive(Debug)]
@@ -89,37 +89,42 @@ pub(super) fn outside(mut vector: DVector<f64>, basis: &[DVector<f64>]) -> DVect
     vector
 }
 
-/// For each dropped row the owners of the kept rows that it is a combination of.
-pub(super) fn dependencies(
+/// Multipliers that do nothing, at each pose for each dropped row: that of the row is one, those of the kept rows that it
+/// is a combination of are the opposite of their coefficients, with rows of length one. They span all such multipliers.
+pub(super) fn idle(
     selection: &Selection,
     (poses, trees): (&[Motions], &TreeRows),
-    rows: &[Row],
-) -> Vec<Vec<RowOwner>> {
-    let mut owners = vec![vec![false; rows.len()]; selection.dropped.len()];
+    n_rows: usize,
+) -> Vec<DMatrix<f64>> {
     let of_trees: Vec<usize> = trees.rows().collect();
     let others: Vec<usize> = selection.kept.iter().copied().filter(|row| !of_trees.contains(row)).collect();
-    for pose in poses {
+    let at = |pose: &Motions| {
+        let mut idle = DMatrix::zeros(selection.dropped.len(), n_rows);
         let by_others = combinations(pose, &others, &selection.dropped);
         let left =
             pose.jacobian.select_rows(&selection.dropped) - &by_others * pose.jacobian.select_rows(&others);
         let by_trees = trees.combinations(pose, left);
         for (coefficients, kept) in [(by_others, &others), (by_trees, &of_trees)] {
-            for (owners, coefficients) in owners.iter_mut().zip(coefficients.row_iter()) {
-                let parts = kept.iter().zip(coefficients.iter()).filter(|(_, c)| c.abs() > TAKES_PART);
-                parts.for_each(|(&row, _)| owners[row] = true);
+            for (column, &row) in coefficients.column_iter().zip(kept) {
+                idle.set_column(row, &-column);
             }
+        }
+        selection.dropped.iter().enumerate().for_each(|(index, &row)| idle[(index, row)] = 1.0);
+        idle
+    };
+    poses.iter().map(at).collect()
+}
+
+/// The owners of the kept rows that a dropped row is a combination of.
+pub(super) fn owners(idle: &[DMatrix<f64>], dropped: usize, rows: &[Row]) -> Vec<RowOwner> {
+    let mut shared: Vec<RowOwner> = Vec::new();
+    for (index, row) in rows.iter().enumerate() {
+        let takes_part = idle.iter().any(|idle| idle[(dropped, index)].abs() > TAKES_PART);
+        if takes_part && !shared.contains(&row.owner) {
+            shared.push(row.owner);
         }
     }
-    let of = |takes_part: Vec<bool>| {
-        let mut shared: Vec<RowOwner> = Vec::new();
-        for (row, _) in rows.iter().zip(takes_part).filter(|(_, takes_part)| *takes_part) {
-            if !shared.contains(&row.owner) {
-                shared.push(row.owner);
-            }
-        }
-        shared
-    };
-    owners.into_iter().map(of).collect()
+    shared
 }
 
 /// The coefficients by which kept rows come nearest to each of the others among the motions of the trees.

@@ -12,6 +12,7 @@ mod format_page;
 mod fuzz;
 mod guesses;
 mod kinematics;
+mod loads;
 mod point_masses;
 mod redundancy;
 mod rows;

@@ -18,10 +18,10 @@ fn number(x: f64) -> Number {
 
 /// Where a revolute joint is in the pose of the model file, and which bodies it joins.
 #[derive(Clone, Copy)]
-struct Pin {
-    bodies: [usize; 2],
-    at: [f64; 3],
-    axis: [f64; 3],
+pub(crate) struct Pin {
+    pub(crate) bodies: [usize; 2],
+    pub(crate) at: [f64; 3],
+    pub(crate) axis: [f64; 3],
 }
 
 impl Pin {
@@ -41,7 +41,7 @@ impl Pin {
 
 /// Bodies with their frames parallel to the global one, joined by revolute joints where those say; body 0 is the
 /// ground. Each body's centre is at its number's place of a skew line, so that no coordinate is special.
-fn pinned(n_bodies: usize, pins: &[Pin]) -> String {
+pub(crate) fn pinned(n_bodies: usize, pins: &[Pin]) -> String {
     let mut text = "format = 1\nname = \"pinned\"\n[[body]]\nname = \"b0\"\nfixed = true\n".to_owned();
     for body in 1..n_bodies {
         text += &format!("[[body]]\nname = \"b{body}\"\nmass = 1\ninertia = [0.01, 0.01, 0.01]\n");
@@ -60,7 +60,7 @@ fn pinned(n_bodies: usize, pins: &[Pin]) -> String {
     text
 }
 
-fn model(page: &str) -> Model {
+pub(crate) fn model(page: &str) -> Model {
     read("pinned", page).unwrap_or_else(|mistakes| panic!("{mistakes}"))
 }
 

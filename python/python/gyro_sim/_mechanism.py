@@ -75,11 +75,12 @@ class Mechanism(_native.Mechanism):
         effort: str | None = None,
         inputs: Mapping[str, Input] | None = None,
     ) -> Run:
-        """A run from the start of the model file to `t_end`, s. What is not given is as the model file has it.
+        """A run from the start of the model file to `t_end`, s. What is not given is as the model file has it; what that
+        does not have is chosen, as by the command (`run.summary["chosen"]` says what and why): joint coordinates where
+        there are any, dop853 at a tolerance of 1e-9, and rodas4 where that finds the mechanism to be stiff.
 
-        tolerance: error tolerated in each step, relative and absolute; steps are then as long as it allows, by dop853
-            and in joint coordinates where the mechanism has them, unless something else is asked for.
-        step: largest step, s, without a tolerance; by rk4 in maximal coordinates, as the paper does.
+        tolerance: error tolerated in each step, relative and absolute; steps are as long as it allows.
+        step: largest step, s, of steps of fixed length, by rk4 unless something else is asked for.
         every: interval between samples, s.
         integrator: "rk4", "tsit5", "dop853" or, for stiff mechanisms, "rodas4".
         coordinates: "joint" or "maximal".
@@ -92,10 +93,6 @@ class Mechanism(_native.Mechanism):
         Ctrl-C stops it. What is not good of the run is warned of (RunWarning); `run.verdict` tells how good it is.
         Raises RequestError for what cannot be done and RunError for a run that fails.
         """
-        if tolerance is not None:
-            integrator = integrator or "dop853"
-            if coordinates is None and correction is None and self.lacks_joint_coordinates is None:
-                coordinates = "joint"
         given = {
             "t-end": t_end,
             "tolerance": tolerance,

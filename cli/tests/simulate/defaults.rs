@@ -1,0 +1,122 @@
+//! Runs of which nothing is said: shipped model files and examples, by the plain command.
+
+use crate::support::{Folder, json, model, simulate};
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::thread;
+
+/// All model files below a folder.
+fn below(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            below(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "toml")
+            && fs::read_to_string(&path).unwrap().contains("[[body]]")
+        {
+            found.push(path);
+        }
+    }
+}
+
+/// The engine that starts soonest of those that have all there is.
+const FAST: [&str; 4] = ["--engine", "jit", "--effort", "quick"];
+
+/// Scenes whose dampers and bushings are hard: the others take explicit methods fewer steps.
+const STIFF: [&str; 2] = ["four_bar_bushing", "gyroscope_overdamped"];
+
+fn runs_well(path: &Path) {
+    let (folder, page) =
+        (Folder::new(&path.file_stem().unwrap().to_string_lossy()), path.display().to_string());
+    // A thousand seconds of it are 300 000 steps.
+    let shorter: &[&str] = if page.contains("gyroscope-long") { &["--t-end", "5"] } else { &[] };
+    let output = simulate(&folder, &[&[page.as_str(), "--json"], &FAST[..], shorter].concat());
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{page}: {said}");
+    let run: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(run["warnings"].as_array().unwrap().len(), 0, "{page}: {}", run["warnings"]);
+    let drift = run["energy_drift"].as_f64().unwrap();
+    // The paper's own step keeps the energy to 1e-12; 1e-9 a step add up.
+    assert!(drift < 1e-7, "{page}: {drift:e}");
+    let name = run["model"].as_str().unwrap();
+    let expected = match name {
+        "gyroscope" => "rk4",
+        _ if STIFF.contains(&name) => "rodas4",
+        _ => "dop853",
+    };
+    assert_eq!(run["integrator"], expected, "{page}: {}", run["chosen"]);
+    assert_eq!(run["chosen"] == "", name == "gyroscope", "{page}: {}", run["chosen"]);
+}
+
+#[test]
+fn every_model_file_and_example_runs_well_by_the_plain_command() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut all = Vec::new();
+    ["models", "examples", "studies"].iter().for_each(|name| below(&root.join(name), &mut all));
+    all.sort();
+    assert!(all.len() > 40, "{all:?}");
+    let (one, other): (Vec<_>, Vec<_>) = all.iter().enumerate().partition(|(index, _)| index % 2 == 0);
+    thread::scope(|scope| {
+        for half in [one, other] {
+            scope.spawn(move || half.into_iter().for_each(|(_, path)| runs_well(path)));
+        }
+    });
+}
+
+/// Its tables are compared with published ones: the words in its file are all that makes them.
+#[test]
+fn the_papers_scene_says_how_it_is_run() {
+    let (folder, page) = (Folder::new("paper"), model("gyroscope.toml"));
+    let said =
+        ["--coordinates", "maximal", "--integrator", "rk4", "--correction", "partition", "--step", "1e-4"];
+    let more = ["--correct-every", "5e-4", "--every", "1e-3", "--t-end", "1"];
+    for engine in ["assembled", "dense", "recursive", "jit"] {
+        let table = |options: &[&str]| {
+            let output = simulate(&folder, &[&[&page, "--engine", engine, "--out", "."], options].concat());
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            fs::read(folder.0.join("gyroscope.csv")).unwrap()
+        };
+        assert!(table(&[]) == table(&[&said[..], &more].concat()), "{engine}");
+        assert!(table(&[]) != table(&["--tolerance", "1e-9"]), "{engine}: an option changes it");
+    }
+}
+
+/// A shaft with a hard brake: 1e6/s against a second.
+const BRAKED: &str = r#"format = 1
+name = "braked"
+[[body]]
+name = "ground"
+fixed = true
+[[body]]
+name = "rotor"
+mass = 1
+inertia = [1, 1, 1]
+[[joint]]
+name = "shaft"
+kind = "revolute"
+axis = [0, 0, 1]
+zero = [1, 0, 0]
+first = { body = "ground" }
+second = { body = "rotor", point = [0, 0.1, 0] }
+friction = 1e6
+rate = 1
+"#;
+
+#[test]
+fn a_stiff_scene_is_found_and_the_summary_says_so() {
+    let folder = Folder::new("braked");
+    fs::write(folder.0.join("braked.toml"), BRAKED).unwrap();
+    let run = json(&folder, &[&["braked.toml"], &FAST[..]].concat());
+    assert_eq!(run["integrator"], "rodas4", "{run}");
+    assert!(run["steps"].as_u64().unwrap() < 1000, "{run}");
+    assert!(run["chosen"].as_str().unwrap().contains("the scene is stiff"), "{run}");
+    // What is typed is kept, stiff or not.
+    let typed =
+        json(&folder, &[&["braked.toml", "--integrator", "dop853", "--t-end", "0.01"], &FAST[..]].concat());
+    assert_eq!(typed["integrator"], "dop853");
+    let output = simulate(&folder, &[&["braked.toml", "--t-end", "0.1"], &FAST[..]].concat());
+    let text = String::from_utf8_lossy(&output.stdout);
+    let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("chosen: ")).collect();
+    assert!(lines.len() == 1 && lines[0].contains("rodas4"), "{text}");
+}
