@@ -12,7 +12,7 @@ use crate::{Rational, Simulation, to_f64};
 const KEYS: [&str; 8] =
     ["t_end", "step", "correct_every", "sample_every", "coordinates", "method", "tolerance", "correction"];
 
-const COORDINATES: [(&str, &str); 2] = [("joint", "joint"), ("maximal", "maximal")];
+const COORDINATES: [&str; 2] = ["joint", "maximal"];
 
 /// Integrators; and words of earlier files, which stand for a correction.
 const METHODS: [(&str, Method); 6] = [
@@ -41,15 +41,13 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Simulation {
     let step = positive(reader, &section, "step").unwrap_or_else(|| ratio(1, 1000));
     let correct_every = positive(reader, &section, "correct_every").unwrap_or_else(|| &step * ratio(5, 1));
     let sample_every = positive(reader, &section, "sample_every").unwrap_or_else(|| &t_end * ratio(1, 1000));
-    let coordinates = section.get("coordinates");
     let method = section.get("method").and_then(|item| item.choice(reader, ("method", &METHODS)));
     let mut simulation = Simulation {
         t_end: to_f64(&t_end),
         step: to_f64(&step),
         correct_every: to_f64(&correct_every),
         sample_every: to_f64(&sample_every),
-        coordinates: coordinates
-            .and_then(|item| item.choice(reader, ("choice of coordinates", &COORDINATES))),
+        coordinates: section.get("coordinates").and_then(|item| coordinates(reader, item)),
         method: None,
         tolerance: section.get("tolerance").and_then(|item| tolerance(reader, item)),
         correction: section.get("correction").and_then(|item| correction(reader, item)),
@@ -66,6 +64,20 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Simulation {
         section.refuse(reader, "tolerance", "method \"rk4\" takes no `tolerance`", help);
     }
     simulation
+}
+
+fn coordinates(reader: &mut Reader<'_>, item: Item<'_>) -> Option<&'static str> {
+    let written = item.text(reader, "coordinates = \"joint\"")?;
+    let known = COORDINATES.iter().find(|known| **known == written).copied();
+    if known.is_none() {
+        let words = [
+            format!("unknown coordinates `{written}`"),
+            "neither joint nor maximal ones".to_owned(),
+            "write `joint`, or `maximal` for positions and Euler parameters of all bodies".to_owned(),
+        ];
+        item.wrong(reader, words);
+    }
+    known
 }
 
 fn tolerance(reader: &mut Reader<'_>, item: Item<'_>) -> Option<f64> {
