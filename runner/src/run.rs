@@ -68,8 +68,7 @@ pub enum Event<'a> {
     Stopped(f64, &'a [f64]),
     /// The linearisation at the end, if it is asked for and there is one.
     Linear(&'a Linear),
-    /// The run fails at this time, s, as the scene is stiff for its method; it was to be left then
-    /// ([`Approach::leaves_stiff`]).
+    /// The run fails at this time, s, as the scene is stiff for its method ([`Approach::leaves_stiff`]).
     Stiff(f64),
     /// How long the run will take. Comes before a long one of fixed steps.
     Forecast(Forecast),
@@ -162,8 +161,8 @@ pub fn run_by<M: Partition<Scalar: Real> + Clone + 'static>(
             if asks && builder.leaves_to_explain() {
                 return Err(Failure::Unexplained(words));
             }
-            let linear = asks.then(|| run.linearised(builder, run.read_at)).flatten();
-            let fastest = linear.as_ref().map(fastest_rate);
+            let fastest =
+                asks.then(|| run.linearised(builder, run.read_at)).flatten().as_ref().map(fastest_rate);
             let advice = solver.map(|error| plan.after(&error, &run.summary.statistics, fastest));
             Err(Failure::Run { words, advice: advice.unwrap_or_default() })
         }
@@ -297,7 +296,6 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     watches: Watches<M::Scalar>,
     paths: Paths,
     steps_at_once: u64,
-    leaves_stiff: bool,
     /// Fixed steps that may yet be taken; under error control the solver counts them.
     budget: u64,
     /// The maximal state when it was last looked at.
@@ -333,7 +331,6 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
                 STEPS_BETWEEN_READINGS
             },
             paths,
-            leaves_stiff: approach.leaves_stiff,
             budget: approach.budget.unwrap_or(u64::MAX),
             turns: Turns::new(mechanism, Scalar::constant(0.0), &y, &angles),
             read_at: 0.0,
@@ -356,7 +353,7 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
         for segment in Schedule::new(settings) {
             match approach.tolerance {
                 None => self.advance(&segment, told)?,
-                Some(_) => self.advance_beyond(segment.to, settings.t_end, told)?,
+                Some(_) => self.advance_beyond(segment.to, (settings, approach), told)?,
             }
             if let Some(end) = self.watches.end.filter(|end| *end <= segment.to) {
                 self.record(end, (builder, approach), &mut tracker, told)?;

@@ -89,8 +89,9 @@ pub(super) fn outside(mut vector: DVector<f64>, basis: &[DVector<f64>]) -> DVect
     vector
 }
 
-/// Multipliers that do nothing, at each pose for each dropped row: that of the row is one, those of the kept rows that it
-/// is a combination of are the opposite of their coefficients, with rows of length one. They span all such multipliers.
+/// Multipliers that do nothing, at each pose for each dropped row: that of the row is one, those of the kept rows that
+/// it is a combination of are the opposite of their coefficients, with rows of length one. They span all such
+/// multipliers.
 pub(super) fn idle(
     selection: &Selection,
     (poses, trees): (&[Motions], &TreeRows),

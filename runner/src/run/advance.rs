@@ -2,7 +2,7 @@
 
 use super::{Event, Halt, Run, Told};
 use crate::input::set;
-use crate::{Occurrence, Segment, What};
+use crate::{Approach, Occurrence, Segment, Settings, What};
 use gyro_sim::{Error, Partition, Real, Scalar, Statistics};
 use std::io;
 use std::time::Instant;
@@ -63,7 +63,7 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
     pub(super) fn advance_beyond<F: FnMut(Event<'_>) -> io::Result<()>>(
         &mut self,
         t: f64,
-        t_end: f64,
+        (settings, approach): (&Settings, &Approach),
         told: &mut Told<F>,
     ) -> Result<(), Halt> {
         // As the motion counts time: in single precision the end may come before this number.
@@ -76,8 +76,10 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
             self.look_for_jumps(told)?;
             let from = self.motion.time();
             let next = M::Scalar::constant(self.controllers.next()).to_f64();
-            self.motion.step_towards(self.mechanism, t_end.min(next))?;
-            self.leave_if_stiff(t_end)?;
+            self.motion.step_towards(self.mechanism, settings.t_end.min(next))?;
+            if approach.leaves_stiff {
+                self.refuse_stiff(settings.t_end)?;
+            }
             self.summary.run_time_s += began.elapsed().as_secs_f64();
             self.look_into_step(from, told)?;
             if self.motion.time() <= t {
@@ -89,10 +91,10 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
     }
 
     /// Fails where stability limits most steps and will limit many more of them.
-    fn leave_if_stiff(&self, t_end: f64) -> Result<(), Error> {
+    fn refuse_stiff(&self, t_end: f64) -> Result<(), Error> {
         let Statistics { accepted, limited_by_stability: limited, fastest_rate: rate, .. } =
             self.motion.statistics();
-        if !self.leaves_stiff || limited < STIFF_STEPS || 2 * limited < accepted {
+        if limited < STIFF_STEPS || 2 * limited < accepted {
             return Ok(());
         }
         let t = self.motion.time();
