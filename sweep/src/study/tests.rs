@@ -188,7 +188,11 @@ fn mistakes_name_their_line_and_the_cure() {
         (format!("{HEAD}{KEEP}vary = [{{ input = \"motor\", tables = \"b\" }}]"), "s.toml:5", "no such file"),
         (format!("{HEAD}vary = []\nkeep = {{ }}"), "s.toml:5", "nothing is kept"),
         (format!("{HEAD}vary = []\n{KEEP}").replace("final", "passages"), "s.toml:5", "an array of tables"),
-        (sensitive("", "uniform = [0, 1]"), "s.toml:4", "write run = { coordinates = \"joint\" }"),
+        (
+            sensitive("t_end = 1", "uniform = [0, 1]").replace("\"joint\"", "\"maximal\""),
+            "s.toml:4",
+            "write run = { coordinates = \"joint\" }",
+        ),
         (
             sensitive("integrator = \"rodas4\"", "uniform = [0, 1]"),
             "s.toml:4",
