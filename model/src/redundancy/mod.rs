@@ -118,8 +118,8 @@ fn selected(mut poses: Poses<'_>) -> (Vec<RedundantRow>, Selection) {
         _ => PointAxes::Global,
     };
     let states = idle(&selection, (&poses.motions, poses.trees), rows.len());
-    let shared = (0..selection.dropped.len())
-        .map(|dropped| (owners(&states, dropped, rows), poses.loads(&states, dropped)));
+    let dropped = selection.dropped.iter().enumerate();
+    let shared = dropped.map(|(at, row)| (owners(&states, (at, *row), rows), poses.loads(&states, at)));
     let redundant = selection.dropped.iter().map(|&row| rows[row]).zip(shared);
     let redundant = redundant
         .map(|(row, (shared_with, loads))| RedundantRow { row, axes: axes(row), shared_with, loads })

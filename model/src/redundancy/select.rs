@@ -117,9 +117,9 @@ pub(super) fn idle(
 }
 
 /// The owners of the kept rows that a dropped row is a combination of.
-pub(super) fn owners(idle: &[DMatrix<f64>], dropped: usize, rows: &[Row]) -> Vec<RowOwner> {
+pub(super) fn owners(idle: &[DMatrix<f64>], (dropped, own): (usize, usize), rows: &[Row]) -> Vec<RowOwner> {
     let mut shared: Vec<RowOwner> = Vec::new();
-    for (index, row) in rows.iter().enumerate() {
+    for (index, row) in rows.iter().enumerate().filter(|(index, _)| *index != own) {
         let takes_part = idle.iter().any(|idle| idle[(dropped, index)].abs() > TAKES_PART);
         if takes_part && !shared.contains(&row.owner) {
             shared.push(row.owner);
