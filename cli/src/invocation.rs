@@ -23,7 +23,8 @@ pub fn parse<P: Parser>() -> P {
     NAME.get_or_init(|| name_of(&command));
     let words: Vec<OsString> = std::env::args_os().collect();
     let matches = command.clone().try_get_matches_from(&words);
-    let matches = matches.map_err(|error| with_suggestion(error, command, words.iter().map(OsString::as_os_str)));
+    let matches =
+        matches.map_err(|error| with_suggestion(error, command, words.iter().map(OsString::as_os_str)));
     matches.and_then(|matches| P::from_arg_matches(&matches)).unwrap_or_else(|error| error.exit())
 }
 
@@ -36,7 +37,8 @@ pub(crate) fn with_suggestion<'w>(
 ) -> clap::Error {
     let Some(ContextValue::String(written)) = error.get(ContextKind::InvalidArg) else { return error };
     let called = words.fold(&command, |command, word| command.find_subcommand(word).unwrap_or(command));
-    let known: Vec<String> = called.get_arguments().filter_map(Arg::get_long).map(|name| name.replace('-', "_")).collect();
+    let known: Vec<String> =
+        called.get_arguments().filter_map(Arg::get_long).map(|name| name.replace('-', "_")).collect();
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let written = written.trim_start_matches('-').replace('-', "_");
     let meant = gyro_model::meant(&written, &known).map(|name| format!("--{}", name.replace('_', "-")));

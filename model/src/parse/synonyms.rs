@@ -19,15 +19,7 @@ const WORDS: [(&[&str], &[&str]); 64] = [
     // Kinds of force.
     (&["torsion", "torsion_spring", "rotational_spring", "elastic", "compliance"], &["spring"]),
     (
-        &[
-            "tsda",
-            "spring_damper",
-            "springdamper",
-            "translational_spring",
-            "tendon",
-            "cable",
-            "rope",
-        ],
+        &["tsda", "spring_damper", "springdamper", "translational_spring", "tendon", "cable", "rope"],
         &["link"],
     ),
     (&["viscous", "dashpot", "viscous_friction"], &["damper"]),

@@ -14,6 +14,7 @@ mod guesses;
 mod kinematics;
 mod point_masses;
 mod redundancy;
+mod rounded;
 mod rows;
 mod shipped_models;
 mod support;

@@ -280,11 +280,7 @@ fn what_is_nearly_exact_is_remarked_upon_and_costs_nothing() {
         "`phase_deg = 90`",
     ];
     for words in offered {
-        assert!(
-            rough.remarks.iter().any(|remark| remark.contains(words)),
-            "{words}: {:?}",
-            rough.remarks
-        );
+        assert!(rough.remarks.iter().any(|remark| remark.contains(words)), "{words}: {:?}", rough.remarks);
     }
     let exact = read("exact.toml", &ROUGH.replace("1e-76", "0")).unwrap_or_else(|m| panic!("{m}"));
     assert_eq!(rough.joints[0].first.axis, exact.joints[0].first.axis, "32 digits of a direction count");

@@ -164,7 +164,7 @@ impl Kept {
         let names = item.and_then(|item| item.texts(reader)).unwrap_or_default();
         let mut found: Vec<(usize, &Named<Quantity>)> = Vec::new();
         for (name, span) in names {
-            let place = gyro_model::column(name, columns.iter().map(|column| column.name.as_str()));
+            let place = gyro_model::column(&name, columns.iter().map(|column| column.name.as_str()));
             match place.map(|place| &columns[place]) {
                 Some(named) => {
                     let place = self.place(named.of);
