@@ -15,17 +15,23 @@ pub(crate) fn contacts(model: &Model) -> Vec<Touch> {
             on: (contact.on.joint, contact.on.coordinate),
             input: contact.input,
             ends: [end(0, f64::NEG_INFINITY), end(1, f64::INFINITY)],
-            restitution: to_f64(&model.exact(&contact.restitution)),
-            levels: contact.levels.each_ref().map(|level| model.value(level)),
-            coefficients: contact.coefficients.each_ref().map(|coefficient| {
+            // What the reader takes for one, or for the same, in spite of rounding.
+            restitution: to_f64(&model.exact(&contact.restitution)).min(1.0),
+            levels: in_order(contact.levels.each_ref().map(|level| model.value(level))),
+            coefficients: in_order(contact.coefficients.each_ref().map(|coefficient| {
                 contact.radius.as_ref().map_or(1.0, |radius| model.value(radius)) * model.value(coefficient)
-            }),
+            })),
             reaction: contact
                 .reaction
                 .map(|output| model.outputs[..output].iter().map(|output| output.kind.columns().len()).sum()),
         }
     };
     model.contacts.iter().map(one).collect()
+}
+
+/// A kinetic number, and a static one that is not below it.
+fn in_order([kinetic, at_rest]: [f64; 2]) -> [f64; 2] {
+    [kinetic, at_rest.max(kinetic)]
 }
 
 /// The contact whose force an input is.

@@ -5,7 +5,9 @@ use crate::Cli;
 use crate::args::CompletionsArgs;
 use crate::failure::Failure;
 use crate::remarks::say;
-use clap::{Command, CommandFactory, Parser};
+use clap::error::{ContextKind, ContextValue};
+use clap::{Arg, Command, CommandFactory, Parser};
+use std::ffi::{OsStr, OsString};
 use std::sync::OnceLock;
 
 /// What help texts write for the program.
@@ -19,7 +21,33 @@ static NAME: OnceLock<String> = OnceLock::new();
 pub fn parse<P: Parser>() -> P {
     let command = named(P::command());
     NAME.get_or_init(|| name_of(&command));
-    P::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit())
+    let words: Vec<OsString> = std::env::args_os().collect();
+    let matches = command.clone().try_get_matches_from(&words);
+    let matches =
+        matches.map_err(|error| with_suggestion(error, command, words.iter().map(OsString::as_os_str)));
+    matches.and_then(|matches| P::from_arg_matches(&matches)).unwrap_or_else(|error| error.exit())
+}
+
+/// The error with the option that was meant where an unknown one was written, if that is known; the parser itself
+/// offers the nearest in letters, however far.
+pub(crate) fn with_suggestion<'w>(
+    mut error: clap::Error,
+    command: Command,
+    words: impl Iterator<Item = &'w OsStr>,
+) -> clap::Error {
+    let Some(ContextValue::String(written)) = error.get(ContextKind::InvalidArg) else { return error };
+    let called = words.fold(&command, |command, word| command.find_subcommand(word).unwrap_or(command));
+    let known: Vec<String> =
+        called.get_arguments().filter_map(Arg::get_long).map(|name| name.replace('-', "_")).collect();
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    let written = written.trim_start_matches('-').replace('-', "_");
+    let meant = gyro_model::meant(&written, &known).map(|name| format!("--{}", name.replace('_', "-")));
+    error.remove(ContextKind::SuggestedArg);
+    error.remove(ContextKind::Suggested);
+    if let Some(meant) = meant {
+        error.insert(ContextKind::SuggestedArg, ContextValue::String(meant));
+    }
+    error
 }
 
 /// Prints the completions for a shell, of the program and of `cargo xtask` alike: commands and options are the same.
@@ -57,6 +85,25 @@ fn name_of(command: &Command) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn options_of_other_programs_are_understood() {
+        for (words, meant) in [
+            (["gyro", "simulate", "--duration"], Some("--t-end")),
+            (["gyro", "simulate", "--dt"], Some("--step")),
+            (["gyro", "simulate", "--integratr"], Some("--integrator")),
+            (["gyro", "show", "--stop-time"], Some("--t-end")),
+            (["gyro", "simulate", "--colour"], None),
+        ] {
+            let error = Cli::command().try_get_matches_from(words).expect_err("an unknown option");
+            let error = with_suggestion(error, Cli::command(), words.iter().map(OsStr::new));
+            let offered = match error.get(ContextKind::SuggestedArg) {
+                Some(ContextValue::String(offered)) => Some(offered.as_str()),
+                _ => None,
+            };
+            assert_eq!(offered, meant, "{words:?}: {error}");
+        }
+    }
 
     /// Each example is a command line of the program that was called, whichever that is.
     #[test]

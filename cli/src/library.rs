@@ -5,13 +5,14 @@
 use crate::args::{Engine, InputSetting, SimulateArgs};
 use crate::columns;
 use crate::failure::Failure;
+use crate::invocation::with_suggestion;
 use crate::jit;
 use crate::runs::Runs;
 use crate::scene::{self, Scene};
 use crate::verdict::{self, Outcome};
 use crate::verify::proved;
 use crate::{Cli, Command, batches, files, json, linearization, remarks, simulate, summary, urdf};
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use gyro_codegen::{Effort, Functions};
 use gyro_jit::{Compiled, Library, Sizes};
 use gyro_model::Model;
@@ -20,6 +21,7 @@ use gyro_runner::{Event, JointSample, Start};
 use gyro_sim::JointPlace;
 use gyro_verifier::Depth;
 use serde_json::{Value, json};
+use std::ffi::OsStr;
 use std::io;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -70,8 +72,9 @@ pub fn import(path: &Path, options: &[String]) -> Result<(String, Vec<String>), 
 /// Reads the options of a command.
 fn parsed(command: &str, file: &str, options: &[String]) -> Result<Command, Failure> {
     let words = ["gyro", command].into_iter().chain(options.iter().map(String::as_str));
-    let parsed = Cli::try_parse_from(words.chain(["--", file]));
+    let parsed = Cli::try_parse_from(words.clone().chain(["--", file]));
     parsed.map(|cli| cli.command).map_err(|error| {
+        let error = with_suggestion(error, Cli::command(), words.map(OsStr::new));
         let text = error.to_string();
         let words = text.split("\n\nUsage").next().unwrap_or_default().split("\n\nFor more").next();
         Failure::Usage(words.unwrap_or_default().trim_start_matches("error: ").trim_end().to_owned())

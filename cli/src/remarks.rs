@@ -12,7 +12,7 @@ const MOST: usize = 10;
 /// Says on standard error what of a model file is nearly exact, and which rows were dropped; refuses the model file if
 /// that is to be an error.
 pub(crate) fn report_redundant(model: &Model, page: &str, strict: bool) -> Result<(), Failure> {
-    model.nearly_exact.iter().take(MOST).for_each(|words| note(&format!("{page}: {words}")));
+    model.remarks.iter().take(MOST).for_each(|words| note(&format!("{page}: {words}")));
     let lines: Vec<String> = model.redundant.iter().map(|row| describe(model, row)).collect();
     if lines.is_empty() {
         return Ok(());

@@ -57,7 +57,7 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     let (page, mut remarks) = converted(args)?;
     let model = gyro_model::read(&out.display().to_string(), &page).map_err(Failure::ModelFile)?;
     write::write(&out, &page, Known::Mark(MARK))?;
-    remarks.extend(model.nearly_exact.iter().cloned());
+    remarks.extend(model.remarks.iter().cloned());
     // What was said is only about a file that is there already.
     let _ = std::io::stdout().write_all(report(&out, &model, &remarks).as_bytes());
     Ok(())

@@ -44,9 +44,9 @@ impl Changes<'_> {
         if !are_zero(&model.gravity) {
             self.add("without gravity".to_owned(), |model| model.gravity = zeros());
         }
-        for (index, joint) in model.joints.iter().enumerate().filter(|(_, joint)| !joint.friction.is_zero()) {
+        for (index, joint) in model.joints.iter().enumerate().filter(|(_, joint)| !joint.damping.is_zero()) {
             self.add(format!("without the friction of `{}`", joint.name), |model| {
-                model.joints[index].friction = Number::integer(0);
+                model.joints[index].damping = Number::integer(0);
             });
         }
         for (index, force) in model.forces.iter().enumerate() {

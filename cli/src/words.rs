@@ -42,16 +42,9 @@ const LISTED: usize = 40;
 
 /// What to write in place of an unknown name.
 pub(crate) fn instead(written: &str, known: &[&str]) -> String {
-    // The search takes as long as lengths and numbers of names multiplied.
-    let searched = if written.len() > 100 || known.len() > 1000 { &[] } else { known };
-    let distance = |name: &&&str| strsim::damerau_levenshtein(written, name);
-    let nearest = searched.iter().min_by_key(distance).filter(|name| {
-        let length = written.chars().count().max(name.chars().count());
-        distance(name) <= length.div_ceil(3)
-    });
     let list = listed(&known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>());
-    match nearest {
-        Some(nearest) => format!("write `{nearest}`; there are {list}"),
+    match gyro_model::meant(written, known) {
+        Some(meant) => format!("write `{meant}`; there are {list}"),
         None => format!("write one of {list}"),
     }
 }

@@ -297,7 +297,7 @@ mod tests {
             );
             page += &match *element {
                 "" => String::new(),
-                "friction" => "friction = 0.1\n".to_owned(),
+                "damping" => "damping = 0.1\n".to_owned(),
                 element => format!("[[force]]\nname = \"f{index}\"\njoint = \"j{index}\"\n{element}\n"),
             };
         }
@@ -318,10 +318,10 @@ mod tests {
             assert!(cost <= allowed, "{joints:?}: {cost} operations, more than {allowed}");
         };
         check(&[("revolute", MOTOR); 5], 9);
-        check(&[("revolute", DAMPER), ("prismatic", "friction"), ("revolute", MOTOR)], 7);
+        check(&[("revolute", DAMPER), ("prismatic", "damping"), ("revolute", MOTOR)], 7);
         // ẋ of a spherical joint takes operations of its own.
-        let alone = cost(&[("revolute", "friction"), ("spherical", "")]) - 2;
-        check(&[("revolute", "friction"), ("spherical", "friction")], alone + 9);
+        let alone = cost(&[("revolute", "damping"), ("spherical", "")]) - 2;
+        check(&[("revolute", "damping"), ("spherical", "damping")], alone + 9);
     }
 
     /// The paper's scene costs about what an analyst's pencil reaches: 17 operations for the joint accelerations, in

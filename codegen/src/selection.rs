@@ -58,24 +58,15 @@ impl fmt::Display for UnknownFunction {
         let groups: Vec<&str> = Group::all().map(Group::name).chain([SOLVERS, ALL]).collect();
         let functions: Vec<&str> = Kernel::all().map(Kernel::name).collect();
         write!(f, "unknown function `{}`", self.name)?;
-        let known = groups.iter().chain(&functions);
-        if let Some(near) = known.copied().find(|known| is_near(&self.name, known)) {
-            write!(f, ": did you mean `{near}`?")?;
+        let known: Vec<&str> = groups.iter().chain(&functions).copied().collect();
+        if let Some(meant) = gyro_model::meant(&self.name, &known) {
+            write!(f, ": did you mean `{meant}`?")?;
         }
         write!(f, "\nthere are the groups {} and the functions {}", groups.join(", "), functions.join(", "))
     }
 }
 
 impl std::error::Error for UnknownFunction {}
-
-/// A third of the letters may differ.
-fn is_near(written: &str, known: &str) -> bool {
-    let length = written.chars().count().max(known.chars().count());
-    length <= LONGEST && strsim::damerau_levenshtein(written, known) <= length / 3
-}
-
-/// Longer words are not compared.
-const LONGEST: usize = 100;
 
 #[cfg(test)]
 mod tests {

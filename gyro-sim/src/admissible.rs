@@ -48,8 +48,12 @@ impl core::error::Error for Inadmissible {}
 /// The sizes that a number other than zero may have in a model file.
 const SIZES: [f64; 2] = [1e-100, 1e100];
 
-/// What rounding may take from an inequality that is allowed to be an equality.
+/// What rounding may take from an inequality that is allowed to be an equality, in roundings of the precision.
 const ROUNDING: f64 = 8.0;
+
+/// As exactly, in parts of their size, as numbers are taken that others computed and wrote with fewer digits. The reader
+/// of model files has the same (`gyro_model`, `validate`).
+const ROUNDED: f64 = 1e-9;
 
 /// Whether parameters are numbers that a model file may have, 0 or of a size from 1e-100 to 1e100, and satisfy all
 /// rules. `rules` computes these of the parameters; each comes with the place of the first parameter in it.
@@ -89,18 +93,18 @@ impl Rule {
             Self::NotParallel(a, b) => {
                 let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
                 let size = |v: [f64; 3]| libm::sqrt(v.iter().fold(0.0, |sum, x| sum + x * x));
-                size(cross) > ROUNDING * f64::EPSILON * size(a) * size(b)
+                size(cross) > ROUNDED * size(a) * size(b)
             }
             Self::Inertia(elements) => {
                 // In the precision in which they are set equality is known to so much.
-                is_inertia(elements, ROUNDING * T::EPSILON.to_f64().max(f64::EPSILON))
+                is_inertia(elements, (ROUNDING * T::EPSILON.to_f64()).max(ROUNDED))
             }
         }
     }
 }
 
 /// Positive definite by its leading principal minors (Sylvester); the tensor of second moments of mass, ½ tr(J) I − J,
-/// positive semidefinite by all its principal minors, each but for rounding. Scaled by the trace, so that no product
+/// positive semidefinite by all its principal minors, where `slack` is added to each moment. Scaled by the trace, so that no product
 /// leaves the numbers.
 fn is_inertia(elements: [f64; 6], slack: f64) -> bool {
     let trace = elements[0] + elements[1] + elements[2];
@@ -110,9 +114,9 @@ fn is_inertia(elements: [f64; 6], slack: f64) -> bool {
     let j = elements.map(|x| x / trace);
     let [m2, m3] = [minors(&j), [determinant(&j); 3]];
     let is_positive = j[0] > 0.0 && m2[0] > 0.0 && m3[0] > 0.0;
-    let m = [0.5 - j[0], 0.5 - j[1], 0.5 - j[2], -j[3], -j[4], -j[5]];
+    let m = [0.5 + slack - j[0], 0.5 + slack - j[1], 0.5 + slack - j[2], -j[3], -j[4], -j[5]];
     let second = [m[0], m[1], m[2], minors(&m)[0], minors(&m)[1], minors(&m)[2], determinant(&m)];
-    is_positive && second.iter().all(|minor| *minor >= -slack)
+    is_positive && second.iter().all(|minor| *minor >= 0.0)
 }
 
 /// The principal minors of order two: of xy, xz and yz.

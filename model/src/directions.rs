@@ -24,9 +24,9 @@ const NEARLY_RIGHT: f64 = 1e-3;
 const RIGHT: f64 = 1e-14;
 
 /// Rounds all directions of a model that is being read to [`DIGITS`] digits; what they nearly were is kept in
-/// [`Model::nearly_exact`].
+/// [`Model::remarks`].
 pub(crate) fn settle(model: &mut Model) {
-    model.nearly_exact = remarks(model);
+    model.remarks.extend(remarks(model));
     for end in model.joints.iter_mut().flat_map(|joint| [&mut joint.first, &mut joint.second]) {
         round(&mut end.axis);
         round(&mut end.zero);
@@ -82,9 +82,9 @@ fn remarks(model: &Model) -> Vec<String> {
         }
         let coordinates = joint.kind.coordinates().iter().zip(&joint.start.position);
         for (kind, number) in coordinates.filter(|(kind, _)| kind.is_angle()) {
-            let key = kind.name();
+            let (key, of) = (kind.name(), format!("{} of joint `{}`", kind.name(), joint.name));
             remarks.extend(number.as_ref().and_then(|n| {
-                right_angle(&format!("{key} of joint `{}`", joint.name), n, &format!("{key}_deg"))
+                right_angle(&of, n, &format!("{key}_deg")).or_else(|| in_degrees(&of, n, key))
             }));
         }
     }
@@ -176,6 +176,15 @@ fn right_angle(of: &str, number: &Number, key: &str) -> Option<String> {
     Some(format!(
         "{of} is {written} rad: nearly, not exactly, {degrees} degrees; if that is meant, write `{key} = {degrees}`"
     ))
+}
+
+/// A whole number of radians beyond one turn, which may be meant in degrees.
+fn in_degrees(of: &str, number: &Number, key: &str) -> Option<String> {
+    let angle = exact(number).filter(|angle| angle.is_integer()).map(to_f64)?;
+    let turns = angle.abs() / std::f64::consts::TAU;
+    (turns > 1.0).then(|| {
+        format!("{of} is {angle} rad, {turns:.2} turns; if degrees are meant, write `{key}_deg = {angle}`")
+    })
 }
 
 /// A rotation by a constant has a sine and a cosine of decimals, which are nothing exact even at a right angle.

@@ -46,7 +46,7 @@ pub use kinematics::Kinematics;
 pub use lines::Lines;
 pub use motion::{BodyMotion, Motion, Prescribed};
 pub use number::{Number, Rational, parse_decimal, to_f64};
-pub use parse::{is_keyword, read, read_with};
+pub use parse::{column, is_keyword, meant, read, read_with};
 pub use redundancy::{Analysis, analyse};
 pub use shape::{Shape, ShapeKind};
 pub use spatial::{Quaternion, Vector, unit_vector};
@@ -96,9 +96,10 @@ pub struct Model {
     pub counts_work: bool,
     /// The functions that the generated module is to have, by their names; `None` where the model file does not say.
     pub functions: Option<Vec<String>>,
-    /// What the model file writes nearly, but not exactly, as a coordinate direction or a right angle, and what to
-    /// write if that is meant: a sentence for each. Formulas are shorter where it is.
-    pub nearly_exact: Vec<String>,
+    /// What is not wrong in the model file, and yet hardly what was meant, a sentence for each with what to write: a
+    /// coordinate direction or a right angle that is nearly, but not exactly, one; degrees in place of radians; a key by
+    /// its former name.
+    pub remarks: Vec<String>,
     /// How the model file asks to be simulated.
     pub simulation: Simulation,
 }
@@ -192,8 +193,8 @@ pub struct Joint {
     pub first: JointEnd,
     /// Where the joint is on the second body.
     pub second: JointEnd,
-    /// Viscous friction: torque on the second body is `-friction` times the relative rate (N·m·s/rad). Zero if absent.
-    pub friction: Number,
+    /// Viscous damping: torque on the second body is `-damping` times the relative rate (N·m·s/rad). Zero if absent.
+    pub damping: Number,
     /// Inertia that turns, or slides, with the joint's one coordinate alone, as a rotor behind a gear does: its kinetic
     /// energy is half of it times the square of the rate (kg·m² or kg). Zero if absent.
     pub armature: Number,

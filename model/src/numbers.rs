@@ -22,7 +22,7 @@ impl Model {
         for joint in &self.joints {
             let ends = [&joint.first, &joint.second];
             numbers.extend(ends.iter().flat_map(|end| end.point.iter().chain(&end.axis).chain(&end.zero)));
-            numbers.extend([&joint.friction, &joint.lead, &joint.length, &joint.armature]);
+            numbers.extend([&joint.damping, &joint.lead, &joint.length, &joint.armature]);
             let start = &joint.start;
             numbers.extend(start.position.iter().flatten().chain(start.rate.iter().flatten()));
             numbers.extend(start.orientation.iter().flatten());

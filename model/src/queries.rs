@@ -212,7 +212,7 @@ impl Model {
         let uses = forces.chain(prescribed.map(|on| (on, CoordinateUse::Prescribed)));
         let of_joint = uses.filter(|(on, _)| on.joint == joint).map(|(_, of)| of);
         let joint = &self.joints[joint];
-        let own = [(&joint.friction, CoordinateUse::Rate), (&joint.armature, CoordinateUse::Value)];
+        let own = [(&joint.damping, CoordinateUse::Rate), (&joint.armature, CoordinateUse::Value)];
         let own = own.into_iter().filter(|(number, _)| !number.is_zero()).map(|(_, of)| of);
         of_joint.chain(own).max().unwrap_or_default()
     }
@@ -291,7 +291,7 @@ impl Model {
             | ForceKind::Load { .. } => true,
         };
         self.is_driven()
-            || self.joints.iter().any(|j| !j.friction.is_zero())
+            || self.joints.iter().any(|j| !j.damping.is_zero())
             || self.forces.iter().any(does_work)
     }
 

@@ -18,7 +18,9 @@ pub(crate) struct Joint {
     axis: Option<Vector>,
     /// Direction from which the angle is measured, on both bodies.
     zero: Option<Vector>,
-    /// Viscous friction, N·m·s/rad or N·s/m.
+    /// Viscous damping, N·m·s/rad or N·s/m.
+    damping: Option<Number>,
+    /// The former name of `damping`.
     friction: Option<Number>,
     /// Revolute, prismatic or screw: inertia of a rotor that turns with the coordinate, kg·m² or kg.
     armature: Option<Number>,

@@ -1,4 +1,4 @@
-//! Applied forces, paper, eqs. (21) and (22): gravity, friction in the joints, and the forces of the model file.
+//! Applied forces, paper, eqs. (21) and (22): gravity, damping in the joints, and the forces of the model file.
 
 use crate::model::joint::Joint;
 use crate::model::law::{Amount, Law};
@@ -16,8 +16,8 @@ use nalgebra::Vector3;
 pub(crate) enum Element<T> {
     /// A force along a coordinate, between two bodies.
     Along { path: Path<T>, law: Law<T> },
-    /// Viscous friction of a spherical joint: minus this times the relative angular velocity.
-    Ball { joint: usize, friction: T },
+    /// Viscous damping of a spherical joint: minus this times the relative angular velocity.
+    Ball { joint: usize, damping: T },
     /// Force and torque on one body.
     Load {
         place: Place<T>,
@@ -31,24 +31,24 @@ pub(crate) enum Element<T> {
 impl<T: Number> Element<T> {
     /// Friction of the joints, then the forces of the model file.
     pub(crate) fn all(model: &Model, places: &Places<T>, joints: &[Joint<T>]) -> Vec<Self> {
-        let frictions = (0..joints.len()).filter_map(|joint| Self::friction(model, joints, joint));
+        let own = (0..joints.len()).filter_map(|joint| Self::damping(model, joints, joint));
         let forces = model.forces.iter().flat_map(|force| Self::new(model, places, joints, &force.kind));
-        frictions.chain(forces).collect()
+        own.chain(forces).collect()
     }
 
-    /// A joint's own viscous friction.
-    fn friction(model: &Model, joints: &[Joint<T>], joint: usize) -> Option<Self> {
-        let friction = &model.joints[joint].friction;
-        if friction.is_zero() {
+    /// A joint's own viscous damping.
+    fn damping(model: &Model, joints: &[Joint<T>], joint: usize) -> Option<Self> {
+        let damping = &model.joints[joint].damping;
+        if damping.is_zero() {
             return None;
         }
         if joints[joint].kind == JointKind::Spherical {
-            return Some(Self::Ball { joint, friction: crate::number::number(model.value(friction)) });
+            return Some(Self::Ball { joint, damping: crate::number::number(model.value(damping)) });
         }
         let described = &joints[joint];
         described.references.first()?;
         let coordinate = Coordinate::of(described, 0);
-        let law = Law::Damper { damping: Amount::new(model, friction) };
+        let law = Law::Damper { damping: Amount::new(model, damping) };
         Some(Self::Along { path: Path::Coordinate(coordinate), law })
     }
 
@@ -112,10 +112,10 @@ impl<T: Number> Element<T> {
                     sink(place, motion, wrench.times(force));
                 }
             }
-            Self::Ball { joint, friction } => {
+            Self::Ball { joint, damping } => {
                 let joint = &scene.joints[*joint];
                 let [i, j] = scene.motions(at, joint);
-                let torque = relative_angular_velocity(&i, &j) * -*friction;
+                let torque = relative_angular_velocity(&i, &j) * -*damping;
                 sink(&joint.first.place, &i, Wrench::torque(-i.a.tr_mul(&(j.a * torque))));
                 sink(&joint.second.place, &j, Wrench::torque(torque));
             }

@@ -6,10 +6,10 @@ use gyro_show::{Amount, Effort};
 
 /// Each force along a coordinate, and the joints' own friction, but that of ball joints.
 pub(super) fn efforts(model: &Model) -> Vec<Effort> {
-    let has_own = |of: &Joint| !of.friction.is_zero() && !of.kind.coordinates().is_empty();
+    let has_own = |of: &Joint| !of.damping.is_zero() && !of.kind.coordinates().is_empty();
     let own = model.joints.iter().enumerate().filter(|(_, of)| has_own(of)).map(|(joint, of)| {
         let on = JointCoordinate { joint, coordinate: 0 };
-        effort(model, on, "damper", &[("damping", &of.friction)])
+        effort(model, on, "damper", &[("damping", &of.damping)])
     });
     own.chain(model.forces.iter().filter_map(|force| along(model, &force.kind))).collect()
 }

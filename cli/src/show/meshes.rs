@@ -60,7 +60,7 @@ fn file(shape: &Shape) -> Option<&str> {
 
 /// The triangles of a file.
 pub(crate) fn mesh(path: &Path) -> io::Result<Mesh> {
-    let scene = parsed(told_apart(files::bytes(path, LARGEST)?), path)?;
+    let scene = parsed(whole(files::bytes(path, LARGEST)?, path)?, path)?;
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for part in &scene.meshes {
         let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
@@ -71,13 +71,52 @@ pub(crate) fn mesh(path: &Path) -> io::Result<Mesh> {
     Mesh::new(&vertices, &triangles).ok_or_else(empty)
 }
 
+/// The deepest nesting of elements in a file: the parser calls itself for each.
+const DEEPEST: usize = 200;
+
+/// Bytes that the parser can be given: it believes the number of triangles that a file claims, and any depth.
+fn whole(bytes: Vec<u8>, path: &Path) -> io::Result<Vec<u8>> {
+    let refused = |words: String| io::Error::new(io::ErrorKind::InvalidData, words);
+    let is = |extension: &str| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension));
+    if is("dae") && depth(&bytes) > DEEPEST {
+        return Err(refused(format!("its elements are nested deeper than {DEEPEST}")));
+    }
+    let bytes = told_apart(bytes);
+    let is_text = !is("stl") || bytes.starts_with(WORD);
+    let claimed = bytes.get(COUNT).and_then(|count| Some(u32::from_le_bytes(count.try_into().ok()?)));
+    let there = bytes.len().saturating_sub(COUNT.end) as u64 / TRIANGLE;
+    match claimed.filter(|claimed| !is_text && u64::from(*claimed) > there) {
+        Some(claimed) => Err(refused(format!("it claims {claimed} triangles and has {there}"))),
+        None => Ok(bytes),
+    }
+}
+
+/// How deep the elements of an XML text are nested at most: an element opens where a name follows `<`, unless it ends
+/// with `/>`. What comments and quoted texts hold may be counted, too.
+fn depth(text: &[u8]) -> usize {
+    let (mut depth, mut deepest) = (0usize, 0);
+    for tag in text.split(|c| *c == b'<').skip(1) {
+        let end = tag.iter().position(|c| *c == b'>').unwrap_or(tag.len());
+        match tag.first() {
+            Some(b'/') => depth = depth.saturating_sub(1),
+            Some(c) if c.is_ascii_alphabetic() && !tag[..end].ends_with(b"/") => depth += 1,
+            _ => {}
+        }
+        deepest = deepest.max(depth);
+    }
+    deepest
+}
+
+/// The word by which the parser knows an STL file of text; where a binary one counts its triangles, and their size.
+const WORD: &[u8] = b"solid";
+const COUNT: std::ops::Range<usize> = 80..84;
+const TRIANGLE: u64 = 50;
+
 /// Binary STL files may begin with the word by which the parser knows text, as their first 80 bytes are anything. They
 /// are known by their length, 50 bytes for each of the triangles that they count, and get other first bytes.
 fn told_apart(mut bytes: Vec<u8>) -> Vec<u8> {
-    const WORD: &[u8] = b"solid";
-    const COUNT: std::ops::Range<usize> = 80..84;
     let count = bytes.get(COUNT).and_then(|count| Some(u32::from_le_bytes(count.try_into().ok()?)));
-    let is_binary = |count| COUNT.end as u64 + 50 * u64::from(count) == bytes.len() as u64;
+    let is_binary = |count| COUNT.end as u64 + TRIANGLE * u64::from(count) == bytes.len() as u64;
     if bytes.starts_with(WORD) && count.is_some_and(is_binary) {
         bytes[..WORD.len()].fill(b' ');
     }
@@ -98,4 +137,74 @@ fn parsed(bytes: Vec<u8>, path: &Path) -> io::Result<Scene> {
     let broken =
         |why: &str| io::Error::new(io::ErrorKind::InvalidData, format!("it is not a whole {kind} file{why}"));
     scene.map_err(|_| broken(""))?.map_err(|e| broken(&format!(": {e}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn refused(bytes: &[u8], name: &str) -> String {
+        whole(bytes.to_vec(), Path::new(name)).expect_err(name).to_string()
+    }
+
+    #[test]
+    fn what_a_file_claims_is_looked_at() {
+        for nested in [201, 200_000] {
+            let text = format!("<COLLADA>{}{}</COLLADA>", "<a>".repeat(nested), "</a>".repeat(nested));
+            assert_eq!(refused(text.as_bytes(), "deep.DAE"), "its elements are nested deeper than 200");
+        }
+        let flat = format!(
+            "<?xml version=\"1.0\"?><COLLADA><!-- {} -->{}</COLLADA>",
+            "a>b",
+            "<a/><b></b>".repeat(1000)
+        );
+        assert!(whole(flat.into_bytes(), Path::new("flat.dae")).is_ok());
+
+        let binary = |count: u32, triangles: usize| {
+            [&[0; 80][..], &count.to_le_bytes(), &vec![0; 50 * triangles]].concat()
+        };
+        assert_eq!(refused(&binary(u32::MAX, 1), "one.stl"), "it claims 4294967295 triangles and has 1");
+        assert_eq!(refused(&binary(3, 2), "two.STL"), "it claims 3 triangles and has 2");
+        for (count, triangles) in [(0, 0), (2, 2), (2, 3)] {
+            assert!(whole(binary(count, triangles), Path::new("good.stl")).is_ok());
+        }
+    }
+
+    /// No file makes the reader panic, or take more than what the file is worth.
+    #[test]
+    fn broken_files_are_errors() {
+        let folder = std::env::temp_dir().join(format!("gyro-meshes-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let pieces = [
+            "<COLLADA>",
+            "<a>",
+            "</a>",
+            "<mesh>",
+            "<triangles count=\"4000000000\">",
+            "<p>0 1 99999999</p>",
+            "solid x\n",
+            "facet normal 0 0 1\n",
+            "vertex 1 2 nan\n",
+            "endloop\n",
+            "v 1e999 0 0\n",
+            "v 0 0 1\n",
+            "f 1 2 99999999999\n",
+            "f -5 1 1\n",
+            "f 1 1 1\n",
+            "\0",
+        ];
+        let mut dice = ChaCha8Rng::seed_from_u64(8);
+        for case in 0..400 {
+            let path = folder.join(["x.dae", "x.stl", "x.obj", "x.STL"][case % 4]);
+            let mut bytes: Vec<u8> = Vec::new();
+            (0..dice.random_range(0..40))
+                .for_each(|_| bytes.extend(pieces[dice.random_range(0..pieces.len())].bytes()));
+            (0..dice.random_range(0..200)).for_each(|_| bytes.push(dice.random()));
+            std::fs::write(&path, &bytes).expect("a file");
+            let _ = mesh(&path);
+        }
+        std::fs::remove_dir_all(&folder).expect("the folder is there");
+    }
 }

@@ -252,7 +252,7 @@ impl Page<'_> {
             let _ = writeln!(text, "{key} = {start:?}");
         }
         if joint.damping > 0.0 && joint.kind.is_single() {
-            let _ = writeln!(text, "friction = {:?}", joint.damping);
+            let _ = writeln!(text, "damping = {:?}", joint.damping);
         }
         if let Some(armature) = self.wishes.armature.filter(|_| self.is_driven(index)) {
             let _ = writeln!(text, "armature = {armature:?}");

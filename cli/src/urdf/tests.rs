@@ -26,7 +26,7 @@ fn mistakes_are_told_by_line_and_element() {
         (r#"<joint type="fixed"/>"#, "r.urdf:4: <joint> of robot `r`: the attribute `name` is missing"),
         (
             r#"<joint name="j" type="hinge"><parent link="base"/><child link="arm"/></joint>"#,
-            "r.urdf:4: <joint name=\"j\">: unknown type `hinge`: write one of `revolute`",
+            "r.urdf:4: <joint name=\"j\">: unknown type `hinge`: write `revolute`; there are",
         ),
         (
             r#"<joint name="j" type="fixed"><parent link="bas"/><child link="arm"/></joint>"#,

@@ -56,9 +56,9 @@ pub fn along_coordinates(system: &mut System, readings: &impl Readings) -> Vec<A
     let (joints, forces) = (&system.model.joints, &system.model.forces);
     let mut all = Vec::new();
     for (index, joint) in joints.iter().enumerate() {
-        if !joint.friction.is_zero() && joint.kind != JointKind::Spherical {
+        if !joint.damping.is_zero() && joint.kind != JointKind::Spherical {
             let on = JointCoordinate { joint: index, coordinate: 0 };
-            all.push(damper(system, readings, on, &joint.friction));
+            all.push(damper(system, readings, on, &joint.damping));
         }
     }
     all.extend(forces.iter().filter_map(|force| along(system, readings, force)));
@@ -111,15 +111,15 @@ impl Forces {
             power_at_points: Graph::ZERO,
         };
         for joint in 0..system.joints.len() {
-            forces.add_friction(system, joint);
+            forces.add_damping(system, joint);
         }
-        let power_of_friction = std::mem::replace(&mut forces.power, Graph::ZERO);
+        let power_of_damping = std::mem::replace(&mut forces.power, Graph::ZERO);
         for force in &system.model.forces {
             forces.add_link(system, &force.kind);
             forces.add_load(system, &force.kind);
         }
         forces.power_at_points = forces.power;
-        forces.power = system.graph.add(power_of_friction, forces.power);
+        forces.power = system.graph.add(power_of_damping, forces.power);
         forces.other_loads = forces.loads.clone();
         for along in along_coordinates(system, &OfBodies) {
             forces.add_along(system, &along);
@@ -127,14 +127,14 @@ impl Forces {
         forces
     }
 
-    /// The viscous friction of a spherical joint.
-    fn add_friction(&mut self, system: &mut System, index: usize) {
-        let friction = &system.model.joints[index].friction;
+    /// The viscous damping of a spherical joint.
+    fn add_damping(&mut self, system: &mut System, index: usize) {
+        let damping = &system.model.joints[index].damping;
         let joint = system.joints[index];
-        if friction.is_zero() || joint.kind != JointKind::Spherical {
+        if damping.is_zero() || joint.kind != JointKind::Spherical {
             return;
         }
-        let (coefficient, spin) = (system.number(friction), relative_spin(system, &joint));
+        let (coefficient, spin) = (system.number(damping), relative_spin(system, &joint));
         let graph = &mut system.graph;
         let drag = graph.scale_vec(coefficient, &spin);
         let (on_first, on_second) = (graph.mat_vec(&joint.relative, &drag), graph.neg_vec(&drag));

@@ -97,7 +97,7 @@ pub fn power(system: &mut System, layout: &Layout, angles: &WholeAngles) -> Expr
     let mut parts = forces::along_coordinates(system, &of_joints);
     parts.retain(|part| part.potential.is_none());
     let mut along = of_joints.summed_along(system, &parts);
-    add_spherical_friction(system, layout, &mut along);
+    add_spherical_damping(system, layout, &mut along);
     let rates: Vec<_> = (0..along.len()).map(|rate| system.graph.symbol(Symbol::Rate(rate))).collect();
     let mut power = system.graph.dot_slices(&along, &rates);
     for part in parts.iter().filter(|part| of_joints.parts(part.on).is_none()) {
@@ -108,26 +108,26 @@ pub fn power(system: &mut System, layout: &Layout, angles: &WholeAngles) -> Expr
     for joint in system.tree.loop_joints.clone() {
         let frames = system.joints[joint];
         if frames.kind == JointKind::Spherical {
-            let friction = system.number(&system.model.joints[joint].friction);
+            let damping = system.number(&system.model.joints[joint].damping);
             let spin = joint_coordinate::relative_spin(system, &frames);
             let square = system.graph.dot(&spin, &spin);
-            let lost = system.graph.mul(friction, square);
+            let lost = system.graph.mul(damping, square);
             power = system.graph.sub(power, lost);
         }
     }
     power
 }
 
-/// The rates of a spherical joint are the relative spin that its friction resists.
-fn add_spherical_friction(system: &mut System, layout: &Layout, along: &mut [ExprId]) {
+/// The rates of a spherical joint are the relative spin that its damping resists.
+fn add_spherical_damping(system: &mut System, layout: &Layout, along: &mut [ExprId]) {
     for link in &layout.links {
         let (Attachment::Joint { joint, .. }, Some(place)) = (link.link.attachment, link.orientation) else {
             continue;
         };
-        let friction = system.number(&system.model.joints[joint].friction);
+        let damping = system.number(&system.model.joints[joint].damping);
         for (k, along) in along[place.u..place.u + 3].iter_mut().enumerate() {
             let rate = system.graph.symbol(Symbol::Rate(place.u + k));
-            let drag = system.graph.mul(friction, rate);
+            let drag = system.graph.mul(damping, rate);
             *along = system.graph.sub(*along, drag);
         }
     }

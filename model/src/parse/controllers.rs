@@ -10,7 +10,7 @@ use super::section::{self, Item, Section};
 use super::seen::{self, Known};
 use super::tables;
 use crate::diagnostics::Related;
-use crate::validate::{Owner, Place};
+use crate::validate::{Owner, Place, rounded};
 use crate::{Controller, Law, Number, Output, Rational, Seen};
 
 const KEYS: [&str; 17] = [
@@ -306,11 +306,11 @@ fn delay(reader: &mut Reader<'_>, section: &Section<'_>, period: Option<&Rationa
     let Some(item) = section.get("delay") else { return Rational::zero() };
     let Some(delay) = plain_number(reader, item) else { return Rational::zero() };
     let longest = period.cloned().unwrap_or_else(|| delay.abs());
-    if delay.is_negative() || delay > longest {
+    if delay.is_negative() || delay > &longest * (Rational::one() + rounded()) {
         let label = format!("{} s", crate::to_f64(&delay));
         let help = format!("write a time between 0 and the period, {} s", crate::to_f64(&longest));
         item.wrong(reader, ["a delay is not negative and not longer than a period".to_owned(), label, help]);
         return Rational::zero();
     }
-    delay
+    delay.min(longest)
 }

@@ -32,7 +32,8 @@ impl Named<'_> {
     }
 
     fn column(&self, name: &str) -> Option<Formula> {
-        self.columns.iter().find(|(known, _)| known == name).map(|(_, seen)| Formula::Seen(*seen))
+        let place = names::column(name, self.columns.iter().map(|(known, _)| known.as_str()))?;
+        Some(Formula::Seen(self.columns[place].1))
     }
 
     fn of(&self, term: &Term) -> Result<Formula, Fault> {

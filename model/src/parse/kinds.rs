@@ -24,7 +24,7 @@ pub(super) const KINDS: [(&str, JointKind); 10] = {
 const OF_KINDS: [&str; 18] = [
     "axis",
     "zero",
-    "friction",
+    "damping",
     "armature",
     "lead",
     "pitch",
@@ -89,7 +89,7 @@ fn has(kind: JointKind, key: &str) -> bool {
     });
     match key {
         "axis" | "zero" => !directed_sides(kind).is_empty(),
-        "friction" => kind == JointKind::Spherical || kind.coordinates().len() == 1,
+        "damping" => kind == JointKind::Spherical || kind.coordinates().len() == 1,
         "armature" => kind.turns_one_rotor(),
         "lead" | "pitch" => kind == JointKind::Screw,
         "length" => kind == JointKind::Rod,
@@ -118,7 +118,7 @@ fn help(kind: JointKind, key: &str) -> String {
         ("armature", _) => {
             "remove it: a rotor turns with a joint of one freedom, revolute, prismatic or screw"
         }
-        ("friction", _) => "add a [[force]] of kind \"damper\" on each coordinate that is to resist",
+        ("damping", _) => "add a [[force]] of kind \"damper\" on each coordinate that is to resist",
         (_, JointKind::Spherical) => "start it with orientation = [e0, e1, e2, e3]",
         _ => return start_help(kind),
     };

@@ -33,7 +33,7 @@ mod tables;
 mod tensor;
 mod units;
 
-pub use names::is_keyword;
+pub use names::{column, is_keyword, meant};
 
 use toml::de::DeTable;
 

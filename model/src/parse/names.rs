@@ -48,8 +48,17 @@ pub(super) fn snake_case(written: &str) -> String {
 }
 
 /// The known name that was meant: what the word of another program stands for, or else the nearest in letters.
-pub(super) fn meant<'n>(written: &str, known: &[&'n str]) -> Option<&'n str> {
+#[must_use]
+pub fn meant<'n>(written: &str, known: &[&'n str]) -> Option<&'n str> {
     synonyms::meant(written, known).or_else(|| nearest(written, known))
+}
+
+/// The place of a column of a run's table among the names of all: `hinge rate` is also `hinge_rate`, as it is called
+/// among the states of a linearisation, wherever no other column has that name.
+pub fn column<'n>(written: &str, mut names: impl Iterator<Item = &'n str> + Clone) -> Option<usize> {
+    let plain = |c: char| if matches!(c, ' ' | '.') { '_' } else { c };
+    let is_it = |name: &str| written.chars().map(plain).eq(name.chars().map(plain));
+    names.clone().position(|name| name == written).or_else(|| names.position(is_it))
 }
 
 /// Longer names, and more of them, are not searched for what may have been meant.
@@ -83,7 +92,7 @@ pub(super) fn nearest<'n>(written: &str, known: &[&'n str]) -> Option<&'n str> {
 /// What to write instead of an unknown name.
 pub(super) fn instead(written: &str, known: &[&str]) -> String {
     let only = known.first().copied().filter(|_| known.len() == 1);
-    match nearest(written, known).or(only) {
+    match meant(written, known).or(only) {
         Some(name) => format!("write `{name}`"),
         None => format!("write one of {}", list(known)),
     }
@@ -116,6 +125,22 @@ mod tests {
         assert_eq!(nearest("zx", &["xx", "zz", "xz"]), Some("xz"));
         assert_eq!(nearest("q", &["m", "k"]), None);
         check("", None);
+    }
+
+    #[test]
+    fn columns_are_found_by_either_spelling() {
+        let names = ["slide rate", "slide", "ball rate x", "tip.x"];
+        let check = |written: &str, place: Option<usize>| {
+            assert_eq!(column(written, names.iter().copied()), place, "{written}");
+        };
+        check("slide rate", Some(0));
+        check("slide_rate", Some(0));
+        check("slide", Some(1));
+        check("ball_rate.x", Some(2));
+        check("tip.x", Some(3));
+        check("rate", None);
+        // A column of that very name comes first.
+        assert_eq!(column("slide_rate", ["slide rate", "slide_rate"].into_iter()), Some(1));
     }
 
     #[test]

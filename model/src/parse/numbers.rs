@@ -348,7 +348,12 @@ fn input_within(name: &str, allowed: Names) -> [String; 3] {
 pub(super) fn unknown_in_expression(reader: &Reader<'_>, name: &str) -> [String; 3] {
     let derived = reader.derived.iter().map(|(name, _)| name.as_str());
     let known: Vec<&str> = reader.parameters.iter().map(String::as_str).chain(derived).collect();
+    let moves = reader.joints.iter().any(|joint| joint.name.as_deref() == Some(name));
     let help = match name.to_ascii_lowercase().as_str() {
+        _ if moves => format!(
+            "numbers are constants and parameters, and `{name}` is a joint, which moves: declare an input for the \
+             strength of a motor or load, and let a [[controller]] or your program set it"
+        ),
         "tau" => "write 2*pi".to_owned(),
         "pi" => "write pi".to_owned(),
         "sin" | "cos" | "tan" | "exp" => "the only function is sqrt: write the value".to_owned(),

@@ -84,7 +84,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         redundant,
         counts_work,
         functions,
-        nearly_exact: Vec::new(),
+        remarks: std::mem::take(&mut reader.remarks),
         simulation,
     };
     point_masses::add(&mut model, &point_masses);

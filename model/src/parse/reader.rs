@@ -15,6 +15,8 @@ pub(super) struct Reader<'t> {
     text: &'t str,
     load: &'t mut Load<'t>,
     mistakes: Vec<Mistake>,
+    /// What is not wrong, and yet worth a word.
+    pub(super) remarks: Vec<String>,
     spans: HashMap<Place, Range<usize>>,
     broken: HashSet<Place>,
     /// Names of the model file's parameters; numbers may refer to them.
@@ -62,6 +64,7 @@ impl<'t> Reader<'t> {
             text,
             load,
             mistakes: Vec::new(),
+            remarks: Vec::new(),
             spans: HashMap::new(),
             broken: HashSet::new(),
             parameters: Vec::new(),

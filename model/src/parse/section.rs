@@ -36,9 +36,14 @@ impl<'t> Section<'t> {
         known: &[&'static str],
     ) -> Self {
         for (key, value) in table {
-            match known.iter().find(|name| **name == key.get_ref().as_ref()) {
+            let written = key.get_ref().as_ref();
+            let former_of = |name: &&&'static str| former(owner, name) == Some(written);
+            match known.iter().find(|name| **name == written).or_else(|| known.iter().find(former_of)) {
                 Some(name) => reader.mark(Place { owner, key: name }, value.span()),
                 None => unknown_key(reader, (owner, title), key, known, table),
+            }
+            if let Some(name) = known.iter().find(former_of) {
+                former_key(reader, (Place { owner, key: name }, title), key, table);
             }
         }
         Self { owner, table }
@@ -61,11 +66,12 @@ impl<'t> Section<'t> {
     }
 
     pub(super) fn get(&self, key: &'static str) -> Option<Item<'t>> {
-        self.table.get(key).map(|value| Item { place: self.place(key), value })
+        let value = self.table.get(key).or_else(|| self.table.get(former(self.owner, key)?));
+        value.map(|value| Item { place: self.place(key), value })
     }
 
     pub(super) fn has(&self, key: &'static str) -> bool {
-        self.table.contains_key(key)
+        self.get(key).is_some()
     }
 
     /// The value of a key that must be there; `title` says what should have it and `example` what to write.
@@ -295,6 +301,27 @@ pub(super) fn refuse_others(
     }
     if other.is_some() {
         own.iter().for_each(|key| reader.doubt(section.place(key)));
+    }
+}
+
+/// The name that a key had before, under which it is still read.
+fn former(owner: Owner, key: &str) -> Option<&'static str> {
+    (matches!(owner, Owner::Joint(_)) && key == "damping").then_some("friction")
+}
+
+/// Remarks on a key that is written by its former name, or refuses it beside the present one.
+fn former_key(
+    reader: &mut Reader<'_>,
+    (place, title): (Place, &str),
+    key: &Spanned<DeString<'_>>,
+    table: &DeTable<'_>,
+) {
+    let (written, name) = (key.get_ref(), place.key);
+    if table.contains_key(name) {
+        let message = format!("`{written}` is the former name of `{name}`, which {title} has, too");
+        reader.wrong(place, key.span(), [message, "given twice".to_owned(), "remove it".to_owned()]);
+    } else {
+        reader.remarks.push(format!("`{written}` of {title} is `{name}` now: write {name} = ..."));
     }
 }
 

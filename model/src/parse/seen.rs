@@ -18,8 +18,8 @@ pub(super) fn known(joints: &[NamedJoint], outputs: &[Output]) -> Known {
 
 /// What a word names.
 pub(super) fn named(reader: &mut Reader<'_>, item: Item<'_>, word: &str, known: &Known) -> Option<Seen> {
-    if let Some((_, measured)) = known.iter().find(|(name, _)| name == word) {
-        return Some(*measured);
+    if let Some(place) = names::column(word, known.iter().map(|(name, _)| name.as_str())) {
+        return Some(known[place].1);
     }
     if reader.joints.iter().any(|joint| joint.name.is_none() || joint.kind.is_none()) {
         reader.doubt(item.place);

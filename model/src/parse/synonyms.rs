@@ -19,16 +19,7 @@ const WORDS: [(&[&str], &[&str]); 67] = [
     // Kinds of force.
     (&["torsion", "torsion_spring", "rotational_spring", "elastic", "compliance"], &["spring"]),
     (
-        &[
-            "tsda",
-            "spring_damper",
-            "springdamper",
-            "translational_spring",
-            "tendon",
-            "cable",
-            "rope",
-            "bushing",
-        ],
+        &["tsda", "spring_damper", "springdamper", "translational_spring", "tendon", "cable", "rope"],
         &["link"],
     ),
     (&["viscous", "dashpot", "viscous_friction"], &["damper"]),
@@ -37,8 +28,8 @@ const WORDS: [(&[&str], &[&str]); 67] = [
     (&["actuator", "drive", "torque_source"], &["motor"]),
     (&["wrench", "external_force", "point_force", "gforce", "applied_force"], &["load"]),
     // Kinds of output.
-    (&["frame", "transform", "pos"], &["pose"]),
-    (&["twist", "vel"], &["velocity"]),
+    (&["frame", "transform", "pos", "position", "location", "orientation"], &["pose"]),
+    (&["twist", "vel", "speed"], &["velocity"]),
     (&["acc", "accel"], &["acceleration"]),
     (&["imu", "accelerometer", "gyro", "gyroscope", "sensor"], &["inertial"]),
     (&["constraint_force", "joint_force", "reaction_force"], &["reaction"]),
@@ -82,7 +73,7 @@ const WORDS: [(&[&str], &[&str]); 67] = [
     (&["anchor", "location", "offset", "site"], &["point", "offset"]),
     (&["direction", "normal"], &["axis"]),
     (&["reference", "ref_direction", "x_axis"], &["zero"]),
-    (&["damping", "viscosity", "b", "c", "d"], &["friction", "damping"]),
+    (&["viscosity", "viscous_friction", "b", "c", "d"], &["damping"]),
     (&["rotor_inertia", "motor_inertia", "reflected_inertia"], &["armature"]),
     (&["theta", "phi", "initial_angle", "angle_rad"], &["angle"]),
     (&["theta_deg", "initial_angle_deg", "degrees"], &["angle_deg"]),
@@ -155,7 +146,11 @@ pub(super) fn no_kind(written: &str, what: &str) -> Option<&'static str> {
             "write a [[driver]] for a coordinate of a joint"
         }
         ("kind of force", "gravity") => "write gravity = [...] at the top of the model file",
-        ("kind of output", "angle" | "position" | "rate" | "joint" | "coordinate") => {
+        ("kind of force", "bushing" | "mount" | "field") => {
+            "there is no force between two frames: join the bodies by joints of one coordinate each, with light bodies \
+             between them, and put a \"spring\" and a \"damper\" on each coordinate"
+        }
+        ("kind of output", "angle" | "rate" | "joint" | "coordinate") => {
             "remove it: joints' coordinates and rates are always among the results"
         }
         _ => return None,

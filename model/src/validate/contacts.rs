@@ -2,7 +2,7 @@
 
 use num_traits::{One, Signed};
 
-use super::{Owner, Place, Problem, shown};
+use super::{Owner, Place, Problem, rounded, shown};
 use crate::{Contact, Model, Rational};
 
 /// Numbers that make no contact.
@@ -22,7 +22,7 @@ pub(super) fn problems(model: &Model, index: usize, contact: &Contact) -> Vec<Pr
         wrong("upper", message, label, "write an upper stop above the lower one");
     }
     let restitution = model.exact(&contact.restitution);
-    if restitution.is_negative() || restitution > Rational::one() {
+    if restitution.is_negative() || restitution > Rational::one() + rounded() {
         let message = format!("the restitution of contact `{name}` is not between 0 and 1");
         let help = "write the part of its rate with which the joint rebounds: 0 for none, 1 for all";
         wrong("restitution", message, shown(&restitution), help);
@@ -40,7 +40,7 @@ pub(super) fn problems(model: &Model, index: usize, contact: &Contact) -> Vec<Pr
         if kinetic.is_negative() {
             let message = format!("the {what} of contact `{name}` is negative");
             wrong(key, message, shown(&kinetic), &format!("write {example}"));
-        } else if at_rest < kinetic {
+        } else if at_rest < &kinetic * (Rational::one() - rounded()) {
             let message = format!("the static {what} of contact `{name}` is less than the kinetic one");
             let label = format!("{}, less than {}", shown(&at_rest), shown(&kinetic));
             let help =

@@ -2,7 +2,7 @@
 
 use num_traits::Zero;
 
-use super::{Owner, Place, Problem, Side};
+use super::{Owner, Place, Problem, Side, rounded};
 use crate::assemble::cross;
 use crate::{Body, Joint, JointEnd, JointKind, Model, Number, Rational};
 
@@ -76,7 +76,9 @@ fn directions(model: &Model, index: usize, side: Side, of: &str) -> Option<Probl
             return Some(problem(key, message, "has no direction", help));
         }
     }
-    vanishes(&cross(&axis, &zero)).then(|| {
+    let square = |v: &[Rational; 3]| v.iter().fold(Rational::zero(), |sum, x| sum + x * x);
+    let is_parallel = square(&cross(&axis, &zero)) <= square(&axis) * square(&zero) * rounded() * rounded();
+    is_parallel.then(|| {
         let message = format!("the zero direction of {of} is parallel to its axis");
         let help = format!("choose a direction that is not parallel to the axis, such as zero = {}", off(0));
         let also = Some((place("axis"), "the axis".to_owned()));

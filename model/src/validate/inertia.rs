@@ -2,7 +2,7 @@
 
 use num_traits::Signed;
 
-use super::{Place, Problem, shown};
+use super::{Place, Problem, rounded, shown};
 use crate::number::{SIZE_EXPONENT, in_range};
 use crate::{Body, Model, Number, Rational, Support};
 
@@ -43,8 +43,9 @@ pub(super) fn size(model: &Model, index: usize, body: &Body) -> Option<Problem> 
     })
 }
 
-/// Whether exact tensor elements xx, yy, zz, xy, xz, yz are those of a rigid body: positive definite, and no principal
-/// moment above the sum of the others.
+/// Whether tensor elements xx, yy, zz, xy, xz, yz are those of a rigid body: positive definite, and no principal moment
+/// above the sum of the others by more than a billionth of all three: moments of plates and rods that a program summed
+/// up are off by their last digits.
 pub fn is_inertia(elements: [Rational; 6]) -> bool {
     let tensor = Tensor(elements);
     tensor.is_positive() && tensor.of_mass().is_semidefinite()
@@ -83,10 +84,12 @@ struct Tensor([Rational; 6]);
 
 impl Tensor {
     /// The tensor of second moments of mass, ∫ ρ ρᵀ dm = ½ tr(J) I − J. It is positive semidefinite exactly if no
-    /// principal moment exceeds the sum of the others, and singular for a lamina.
+    /// principal moment exceeds the sum of the others, and singular for a lamina; half of what rounding may have taken is
+    /// added to each moment.
     fn of_mass(&self) -> Self {
         let [xx, yy, zz, xy, xz, yz] = &self.0;
-        let half = (xx + yy + zz) / Rational::from_integer(2.into());
+        let half = (xx + yy + zz) * (Rational::from_integer(1.into()) + rounded())
+            / Rational::from_integer(2.into());
         Self([&half - xx, &half - yy, &half - zz, -xy, -xz, -yz])
     }
 
@@ -151,6 +154,8 @@ mod tests {
         check([1, 1, 1, 0, 0, 0], true, true);
         check([1, 1, 2, 0, 0, 0], true, true);
         check([1_000_000, 1_000_000, 2_000_001, 0, 0, 0], true, false);
+        check([1_000_000_000, 1_000_000_000, 2_000_000_001, 0, 0, 0], true, true);
+        check([1_000_000_000, 1_000_000_000, 2_000_000_005, 0, 0, 0], true, false);
         check([0, 1, 1, 0, 0, 0], false, true);
         check([2, 2, 2, 2, 0, 0], false, false);
         check([2, 2, 2, 1, 0, 0], true, true);

@@ -21,6 +21,15 @@ pub(crate) use topology::problems as topology_problems;
 use crate::number::in_range;
 use crate::{Model, Number, Rational, to_f64};
 
+/// How exactly numbers are taken that people compute in floating point and write with ten digits or more: what must not
+/// exceed something may exceed it by one part in so many, and what is as near as that is equal.
+const ROUNDED: i64 = 1_000_000_000;
+
+/// One part of [`ROUNDED`].
+pub(crate) fn rounded() -> Rational {
+    Rational::new(1.into(), ROUNDED.into())
+}
+
 /// A place of the model file: a key of something, or the thing itself where the key is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Place {

@@ -19,7 +19,7 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
         found.extend(weight(model, index, body));
     }
     for (index, joint) in model.joints.iter().enumerate() {
-        found.extend(friction(model, index, joint));
+        found.extend(damping(model, index, joint));
         found.extend(armature(model, index, joint));
         found.extend(advance(model, index, joint));
         found.extend(length(model, index, joint));
@@ -67,16 +67,16 @@ fn weight(model: &Model, index: usize, body: &Body) -> Option<Problem> {
     })
 }
 
-fn friction(model: &Model, index: usize, joint: &Joint) -> Option<Problem> {
-    let value = model.exact(&joint.friction);
+fn damping(model: &Model, index: usize, joint: &Joint) -> Option<Problem> {
+    let value = model.exact(&joint.damping);
     let unit = match joint.kind {
         JointKind::Prismatic | JointKind::PointOnLine => "N.s/m",
         _ => "N.m.s/rad",
     };
     value.is_negative().then(|| Problem {
-        place: Place::joint(index, "friction"),
+        place: Place::joint(index, "damping"),
         also: None,
-        message: format!("the friction of joint `{}` is negative", joint.name),
+        message: format!("the damping of joint `{}` is negative", joint.name),
         label: format!("{} {unit} would drive the joint", shown(&value)),
         help: "write a coefficient of 0 or more".to_owned(),
     })

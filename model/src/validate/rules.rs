@@ -49,7 +49,7 @@ impl Model {
             );
         }
         for joint in &self.joints {
-            rules.extend([&joint.friction, &joint.armature].map(NotNegative));
+            rules.extend([&joint.damping, &joint.armature].map(NotNegative));
             match joint.kind {
                 JointKind::Screw => rules.push(NotZero(std::slice::from_ref(&joint.lead))),
                 JointKind::Rod => rules.push(Positive(&joint.length)),

@@ -262,7 +262,7 @@ axis = [0, 0, 1]
 zero = [1, 0, 0]
 first = { body = "wall" }
 second = { body = "arm", point = ["length", 0, 0] }
-friction = 0.1
+damping = 0.1
 
 [[force]]
 name = "coil"
@@ -299,7 +299,7 @@ fn the_words_of_others_are_understood() {
     for word in ["torsion_spring", "tsda", "viscous", "dry_friction", "hard_stop", "actuator", "wrench"] {
         change("kind = \"spring\"", &format!("kind = {word:?}"));
     }
-    for word in ["imu", "frame", "accel", "pos"] {
+    for word in ["imu", "frame", "accel", "pos", "position", "location", "speed"] {
         change("kind = \"pose\"", &format!("kind = {word:?}"));
     }
     for (ours, theirs) in [
@@ -313,7 +313,7 @@ fn the_words_of_others_are_understood() {
         ("first = { body", "parent = { body"),
         ("second = { body", "child = { body"),
         ("point = [\"l", "origin = [\"l"),
-        ("friction = 0.1", "damping = 0.1"),
+        ("damping = 0.1", "viscosity = 0.1"),
         ("stiffness = 2", "k = 2"),
         ("free = 0.1", "springref = 0.1"),
         ("t_end = 1", "duration = 1"),
@@ -349,6 +349,37 @@ fn the_words_of_others_are_understood() {
     assert!(all.is_empty(), "{} of {}:\n{}", all.len(), changes.len(), all.join("\n\n"));
 }
 
+/// What was called otherwise is still read, with a remark, and not beside its present name.
+#[test]
+fn keys_are_read_by_their_former_names() {
+    let read = |keys: &str| read_beside(Path::new("a/b"), &STRANGER_S.replacen("damping = 0.1", keys, 1));
+    let [now, before] = ["damping = 0.1", "friction = 0.1"].map(|keys| read(keys).expect("a model"));
+    assert_eq!(now.joints[0].damping, before.joints[0].damping);
+    assert!(now.remarks.is_empty() && !now.joints[0].damping.is_zero());
+    assert_eq!(before.remarks, ["`friction` of joint `shoulder` is `damping` now: write damping = ..."]);
+    let twice = read("damping = 0.1\nfriction = 0.1").expect_err("a mistake").render();
+    assert!(twice.contains("`friction` is the former name of `damping`"), "{twice}");
+    let misplaced = read("kind = \"fixed\"\nfriction = 0.1").is_err();
+    assert!(misplaced);
+}
+
+/// Degrees that are written as radians are remarked upon, and radians are not.
+#[test]
+fn degrees_in_place_of_radians_are_remarked_upon() {
+    let remarks = |start: &str| {
+        let page = STRANGER_S.replacen("damping = 0.1", start, 1);
+        read_beside(Path::new("a/b"), &page).expect("a model").remarks
+    };
+    for degrees in [7, 30, 45, 60, 180, -90, 360] {
+        let found = remarks(&format!("angle = {degrees}"));
+        assert!(found.iter().any(|words| words.contains(&format!("angle_deg = {degrees}"))), "{found:?}");
+        assert!(remarks(&format!("angle_deg = {degrees}")).is_empty());
+    }
+    for radians in ["1", "-6", "62.83", "\"20*pi\"", "\"400 deg\""] {
+        assert!(remarks(&format!("angle = {radians}")).is_empty(), "{radians}");
+    }
+}
+
 /// Messages whose cure is no single edit say what to do.
 #[test]
 fn things_that_are_elsewhere_are_explained() {
@@ -360,7 +391,9 @@ fn things_that_are_elsewhere_are_explained() {
     check("mass = 1", "mass = \"2 stone\"", "unknown unit `stone`");
     check("kind = \"revolute\"", "kind = \"floating\"", "free = true");
     check("kind = \"revolute\"", "kind = \"gearbox\"", "[[coupler]]");
-    check("friction = 0.1", "stiffness = 0.1", "[[force]] of kind \"spring\"");
-    check("friction = 0.1", "range = [0, 1]", "[[force]] of kind \"stop\"");
+    check("damping = 0.1", "stiffness = 0.1", "[[force]] of kind \"spring\"");
+    check("damping = 0.1", "range = [0, 1]", "[[force]] of kind \"stop\"");
+    check("kind = \"spring\"", "kind = \"bushing\"", "joints of one coordinate each");
+    check("stiffness = 2", "stiffness = \"10 + 5*shoulder^2\"", "`shoulder` is a joint, which moves");
     check("mass = 1", "mass = 1\ncom = [0, 0, 1]", "origin at the mass centre");
 }

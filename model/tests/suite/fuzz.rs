@@ -27,7 +27,7 @@ const TOKENS: [&str; 110] = [
     "point",
     "axis",
     "zero",
-    "friction",
+    "damping",
     "angle",
     "angle_deg",
     "rate",

@@ -15,6 +15,7 @@ mod kinematics;
 mod loads;
 mod point_masses;
 mod redundancy;
+mod rounded;
 mod rows;
 mod shipped_models;
 mod support;

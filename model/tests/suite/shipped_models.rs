@@ -238,7 +238,7 @@ fn shipped_pages_write_exactly_what_they_mean() {
     for (path, text) in [crate::support::pages("models"), crate::support::pages("tests/models")].concat() {
         let mut table = |_: &str| Ok("t,angle\n0,0\n1,0.5\n2,1\n".to_owned());
         if let Ok(model) = gyro_model::read_with("page.toml", &text, &mut table) {
-            assert!(model.nearly_exact.is_empty(), "{path:?}: {:?}", model.nearly_exact);
+            assert!(model.remarks.is_empty(), "{path:?}: {:?}", model.remarks);
         }
     }
 }
@@ -280,11 +280,7 @@ fn what_is_nearly_exact_is_remarked_upon_and_costs_nothing() {
         "`phase_deg = 90`",
     ];
     for words in offered {
-        assert!(
-            rough.nearly_exact.iter().any(|remark| remark.contains(words)),
-            "{words}: {:?}",
-            rough.nearly_exact
-        );
+        assert!(rough.remarks.iter().any(|remark| remark.contains(words)), "{words}: {:?}", rough.remarks);
     }
     let exact = read("exact.toml", &ROUGH.replace("1e-76", "0")).unwrap_or_else(|m| panic!("{m}"));
     assert_eq!(rough.joints[0].first.axis, exact.joints[0].first.axis, "32 digits of a direction count");

@@ -77,7 +77,7 @@ fn bodies_on_rods_float_and_carry_others() {
 #[test]
 fn an_open_tree_is_the_same_whatever_acts_on_its_joints() {
     let mut model = page(3, &[("revolute", [0, 1]), ("revolute", [0, 2]), ("revolute", [3, 1])]);
-    model.joints[2].friction = model.bodies[1].mass.clone();
+    model.joints[2].damping = model.bodies[1].mass.clone();
     assert_eq!(model.use_of_coordinates(2), CoordinateUse::Rate);
     assert_eq!(order(&Tree::of_coordinates(&model)), order(&Tree::of(&model)));
     assert_eq!(order(&Tree::of(&model)), [(1, Some(0)), (2, Some(1)), (3, Some(2))]);
@@ -89,7 +89,7 @@ fn an_open_tree_is_the_same_whatever_acts_on_its_joints() {
 fn a_nut_hangs_on_its_guide() {
     let cut = |joints: &[(&str, [usize; 2])], n| {
         let mut model = page(n, joints);
-        model.joints[0].friction = model.bodies[1].mass.clone();
+        model.joints[0].damping = model.bodies[1].mass.clone();
         Tree::of_coordinates(&model).loop_joints
     };
     let rail = [("revolute", [0, 1]), ("revolute", [1, 2]), ("prismatic", [0, 2])];
@@ -109,9 +109,9 @@ fn forces_are_kept_off_the_joint_that_is_cut() {
     );
     let cut = |model: &Model| Tree::of_coordinates(model).loop_joints;
     assert_eq!(cut(&model), [2]);
-    model.joints[2].friction = model.bodies[1].mass.clone();
+    model.joints[2].damping = model.bodies[1].mass.clone();
     assert_eq!(cut(&model), [1]);
-    (0..4).for_each(|joint| model.joints[joint].friction = model.bodies[1].mass.clone());
+    (0..4).for_each(|joint| model.joints[joint].damping = model.bodies[1].mass.clone());
     assert_eq!(cut(&model), [2]);
 }
 

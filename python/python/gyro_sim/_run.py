@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
+# Names of columns and of the states of a linearisation differ in these.
+_PLAIN = str.maketrans(" .", "__")
+
+
 class Verdict:
     """How far a run can be trusted, by comparison with another one of the same mechanism."""
 
@@ -71,11 +75,13 @@ class Run:
         return list(self._values)
 
     def __getitem__(self, name: str) -> Array:
-        """A quantity at each sample, in its unit; shape (samples,)."""
-        try:
+        """A quantity at each sample, in its unit; shape (samples,). "hinge rate" may be written "hinge_rate"."""
+        if name in self._values:
             return self._values[name]
-        except KeyError:
-            raise KeyError(f"{name!r}: the run has {', '.join(map(repr, self._values))}") from None
+        for column, values in self._values.items():
+            if column.translate(_PLAIN) == name.translate(_PLAIN):
+                return values
+        raise KeyError(f"{name!r}: the run has {', '.join(map(repr, self._values))}")
 
     def __contains__(self, name: object) -> bool:
         return name in self._values

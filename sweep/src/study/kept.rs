@@ -164,7 +164,8 @@ impl Kept {
         let names = item.and_then(|item| item.texts(reader)).unwrap_or_default();
         let mut found: Vec<(usize, &Named<Quantity>)> = Vec::new();
         for (name, span) in names {
-            match columns.iter().find(|column| column.name == name) {
+            let place = gyro_model::column(&name, columns.iter().map(|column| column.name.as_str()));
+            match place.map(|place| &columns[place]) {
                 Some(named) => {
                     let place = self.place(named.of);
                     if found.iter().any(|(other, _)| *other == place) {

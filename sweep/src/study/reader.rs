@@ -238,9 +238,6 @@ const LISTED: usize = 40;
 
 /// What to write in place of an unknown name.
 pub(super) fn instead(written: &str, known: &[&str], introduction: &str) -> String {
-    let distance = |name: &&&str| strsim::damerau_levenshtein(written, name);
-    let is_near =
-        |name: &&&str| distance(name) <= name.chars().count().max(written.chars().count()).div_ceil(3);
     let list: Vec<String> = known.iter().take(LISTED).map(|name| format!("`{name}`")).collect();
     let more =
         if known.len() > LISTED { format!(" and {} more", known.len() - LISTED) } else { String::new() };
@@ -248,8 +245,8 @@ pub(super) fn instead(written: &str, known: &[&str], introduction: &str) -> Stri
     if known.is_empty() {
         return "there is nothing of that kind".to_owned();
     }
-    match known.iter().min_by_key(distance).filter(is_near) {
-        Some(nearest) => format!("write `{nearest}`; {introduction} {list}{more}"),
+    match gyro_model::meant(written, known) {
+        Some(meant) => format!("write `{meant}`; {introduction} {list}{more}"),
         None => format!("{introduction} {list}{more}"),
     }
 }

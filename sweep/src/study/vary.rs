@@ -237,7 +237,8 @@ fn find(
             place(&vocabulary.inputs).map(|k| (Target::Input(k), String::new(), Some(vocabulary.inputs[k].1)))
         }
         _ => {
-            let start = vocabulary.starts.iter().find(|start| start.name == name);
+            let starts = vocabulary.starts.iter().map(|start| start.name.as_str());
+            let start = gyro_model::column(name, starts).map(|place| &vocabulary.starts[place]);
             start.map(|start| (start.of.clone(), start.unit.clone(), None))
         }
     };

@@ -97,9 +97,9 @@ impl Page {
             let point = self.tunables(point);
             text += &format!("{key} = {{ body = \"b{body}\", point = {point}{frame} }}\n");
         }
-        let has_friction = kind.coordinates.len() == 1 || kind.name == "spherical";
-        if has_friction && kind.name != "point_on_line" && self.dice.once_in(4) {
-            text += &format!("friction = {}\n", self.positive());
+        let has_damping = kind.coordinates.len() == 1 || kind.name == "spherical";
+        if has_damping && kind.name != "point_on_line" && self.dice.once_in(4) {
+            text += &format!("damping = {}\n", self.positive());
         }
         if kind.freedoms == 1 && self.rotors.once_in(8) {
             text += &format!("armature = {}\n", self.rotors.pick(&["0.02", "0.15", "0.3", "1.25"]));

@@ -26,7 +26,7 @@ impl<F: Field> Evaluation<'_, F> {
         let mut forces =
             Forces { loads: vec![none; model.bodies.len()], potential: zero.clone(), power: zero };
         for joint in 0..model.joints.len() {
-            self.add_friction(&mut forces, joint);
+            self.add_damping(&mut forces, joint);
         }
         for force in &model.forces {
             self.add(&mut forces, &force.kind)?;
@@ -59,18 +59,18 @@ impl<F: Field> Evaluation<'_, F> {
         Some(())
     }
 
-    /// A joint's own viscous friction: along its one coordinate, or against all relative rotation.
-    fn add_friction(&self, forces: &mut Forces<F>, joint: usize) {
+    /// A joint's own viscous damping: along its one coordinate, or against all relative rotation.
+    fn add_damping(&self, forces: &mut Forces<F>, joint: usize) {
         let description = &self.textbook.model.joints[joint];
-        if description.friction.is_zero() {
+        if description.damping.is_zero() {
             return;
         }
         if description.kind != JointKind::Spherical {
-            return self.add_damper(forces, JointCoordinate { joint, coordinate: 0 }, &description.friction);
+            return self.add_damper(forces, JointCoordinate { joint, coordinate: 0 }, &description.damping);
         }
         let [first, second] = [description.first.body, description.second.body];
         let spin = self.moving[second].omega() - self.moving[first].omega();
-        let drag = spin.times(&self.scope.number(&description.friction));
+        let drag = spin.times(&self.scope.number(&description.damping));
         forces.power = &forces.power - drag.dot(&spin);
         forces.push(first, &Load::torque(&self.moving[first], &self.scope, &drag));
         forces.push(second, &Load::torque(&self.moving[second], &self.scope, &-drag));

@@ -74,7 +74,7 @@ fn page_with_work(key: &str) -> String {
     format!(
         "format = 1\nname = \"crank\"\n{key}[inputs]\nu = 0\n[[body]]\nname = \"wall\"\nfixed = true\n\
          [[body]]\nname = \"arm\"\nmass = 1\ninertia = [0.1, 0.2, 0.15]\n\
-         [[joint]]\nname = \"hinge\"\nkind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\nfriction = 0.1\n\
+         [[joint]]\nname = \"hinge\"\nkind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\ndamping = 0.1\n\
          first = {{ body = \"wall\" }}\nsecond = {{ body = \"arm\", point = [0.5, 0, 0] }}\n\
          [[force]]\nname = \"winding\"\nkind = \"motor\"\njoint = \"hinge\"\nvalue = \"u\"\n\
          [[output]]\nname = \"spent\"\nkind = \"power\"\n"

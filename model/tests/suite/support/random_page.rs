@@ -195,7 +195,7 @@ impl Page {
             let _ = writeln!(self.text, "{coordinate} = {}\nrough = true", dice.number());
         }
         if coordinates.len() == 1 && dice.below(3) == 0 {
-            let _ = writeln!(self.text, "friction = {}", dice.positive());
+            let _ = writeln!(self.text, "damping = {}", dice.positive());
         }
         self.joints.push(coordinates);
     }
