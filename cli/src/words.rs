@@ -43,7 +43,8 @@ const LISTED: usize = 40;
 /// What to write in place of an unknown name.
 pub(crate) fn instead(written: &str, known: &[&str]) -> String {
     let list = listed(&known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>());
-    match gyro_model::meant(written, known) {
+    let only = known.first().copied().filter(|_| known.len() == 1);
+    match gyro_model::meant(written, known).or(only) {
         Some(meant) => format!("write `{meant}`; there are {list}"),
         None => format!("write one of {list}"),
     }

@@ -99,7 +99,7 @@ axis = [0, 0, 1]
 zero = [1, 0, 0]
 first = { body = "ground" }
 second = { body = "rotor", point = [0, 0.1, 0] }
-friction = 1e6
+damping = 1e6
 rate = 1
 "#;
 
