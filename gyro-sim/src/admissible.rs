@@ -51,8 +51,8 @@ const SIZES: [f64; 2] = [1e-100, 1e100];
 /// What rounding may take from an inequality that is allowed to be an equality, in roundings of the precision.
 const ROUNDING: f64 = 8.0;
 
-/// As exactly, in parts of their size, as numbers are taken that others computed and wrote with fewer digits. The reader
-/// of model files has the same (`gyro_model`, `validate`).
+/// As exactly, in parts of their size, as numbers are taken that others computed and wrote with fewer digits. The
+/// reader of model files has the same (`gyro_model`, `validate`).
 const ROUNDED: f64 = 1e-9;
 
 /// Whether parameters are numbers that a model file may have, 0 or of a size from 1e-100 to 1e100, and satisfy all
@@ -104,8 +104,8 @@ impl Rule {
 }
 
 /// Positive definite by its leading principal minors (Sylvester); the tensor of second moments of mass, ½ tr(J) I − J,
-/// positive semidefinite by all its principal minors, where `slack` is added to each moment. Scaled by the trace, so that no product
-/// leaves the numbers.
+/// positive semidefinite by all its principal minors, where `slack` is added to each moment. Scaled by the trace, so
+/// that no product leaves the numbers.
 fn is_inertia(elements: [f64; 6], slack: f64) -> bool {
     let trace = elements[0] + elements[1] + elements[2];
     if trace.is_nan() || trace <= 0.0 {

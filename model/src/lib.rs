@@ -97,8 +97,8 @@ pub struct Model {
     /// The functions that the generated module is to have, by their names; `None` where the model file does not say.
     pub functions: Option<Vec<String>>,
     /// What is not wrong in the model file, and yet hardly what was meant, a sentence for each with what to write: a
-    /// coordinate direction or a right angle that is nearly, but not exactly, one; degrees in place of radians; a key by
-    /// its former name.
+    /// coordinate direction or a right angle that is nearly, but not exactly, one; degrees in place of radians; a key
+    /// by its former name.
     pub remarks: Vec<String>,
     /// How the model file asks to be simulated.
     pub simulation: Simulation,

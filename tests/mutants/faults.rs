@@ -262,7 +262,7 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/forces.rs", "friction-in-loops", "*sum = if is_negative { «graph.sub(*sum, part.force)» }", "graph.add(*sum, part.force)"),
     fault("joint_space/forces.rs", "friction-in-loops", "if is_negative { «graph.sub(sum, rate)» }", "graph.add(sum, rate)"),
     fault("joint_space/forces.rs", "friction-in-loops", "let load = «unit.scaled(&mut system.graph, part.force)»;", "unit"),
-    fault("joint_space/forces.rs", "friction-in-loops", "let lost = «system.graph.mul(friction, square)»;", "square"),
+    fault("joint_space/forces.rs", "friction-in-loops", "let lost = «system.graph.mul(damping, square)»;", "square"),
     fault("joint_space/forces.rs", "friction-in-loops", "let done = «system.graph.mul(part.force, rate)»;", "rate"),
     fault("joint_space/whole_angles.rs", "friction-in-loops", "plus(&second.angle, signs[1]).plus(&first.angle, «!signs[0]»)", "signs[0]"),
     fault("joint_space/forces.rs", "friction", "let mut power = «system.graph.dot_slices(&along, &rates)»;", "Graph::ZERO"),

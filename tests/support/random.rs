@@ -77,6 +77,8 @@ pub fn posed(model: &Model, rate: f64, random: &mut Random) -> Model {
             body.angular_velocity = Some(random.vector(rate).map(number));
         }
     }
+    // Any pose, beyond stops, too.
+    model.contacts.clear();
     for joint in &mut model.joints {
         let coordinates = joint.kind.coordinates();
         let is_spherical = joint.kind == JointKind::Spherical;

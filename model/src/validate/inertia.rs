@@ -84,8 +84,8 @@ struct Tensor([Rational; 6]);
 
 impl Tensor {
     /// The tensor of second moments of mass, ∫ ρ ρᵀ dm = ½ tr(J) I − J. It is positive semidefinite exactly if no
-    /// principal moment exceeds the sum of the others, and singular for a lamina; half of what rounding may have taken is
-    /// added to each moment.
+    /// principal moment exceeds the sum of the others, and singular for a lamina; half of what rounding may have taken
+    /// is added to each moment.
     fn of_mass(&self) -> Self {
         let [xx, yy, zz, xy, xz, yz] = &self.0;
         let half = (xx + yy + zz) * (Rational::from_integer(1.into()) + rounded())

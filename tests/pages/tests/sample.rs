@@ -83,7 +83,7 @@ fn pages_have_everything() {
         "[[1",
         "pitch",
         "lead",
-        "friction =",
+        "damping =",
         "* 3 / 3",
         "sqrt(",
         "^3 /",
