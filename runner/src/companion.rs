@@ -50,7 +50,7 @@ pub fn companions(settings: &Settings, approach: &Approach) -> Vec<(Settings, Ap
 /// A companion has so many samples at least, and so many times those of the run while these are not too many: what comes
 /// back at each sample of the run is seen to move between them.
 const LOOKS: f64 = 1024.0;
-const OFTEN: f64 = 7.0;
+const OFTEN: f64 = 13.0;
 const MANY: f64 = 100_000.0;
 
 /// A companion's settings with more samples, among them those of the run: the size of a motion is taken from them. Steps

@@ -59,7 +59,7 @@ fn no_run_is_good_that_has_stepped_over_a_pulse() {
         let step = 10f64.powf(random.random_range(-3.0..-1.5));
         let width = step * 10f64.powf(random.random_range(-2.0..1.0));
         let from = random.random_range(0.0..0.9);
-        let height = random.random_range(-1.0..1.0) / width;
+        let height = 10f64.powf(random.random_range(-5.0..0.5)) / width;
         let (edge, end) = (width / 8.0, from + width);
         let between = if random.random_bool(0.5) { Between::Held } else { Between::Linear };
         let small = random.random_range(0.0..1.0);
@@ -72,9 +72,8 @@ fn no_run_is_good_that_has_stepped_over_a_pulse() {
             [2.0, small],
         ];
         let rate = random.random_range(0.5..2.0);
-        let mut spinner = Spinner::<f64> { rate, ..Spinner::default() };
+        let spinner = Spinner { rate, ..Spinner::default() };
         let start = Start { inputs: vec![Input::new(0, rows.clone(), between)], ..spinner.initial() };
-        spinner.rate = rate;
         let correct_every = random.random_bool(0.5).then_some(step);
         let sample_every = [T_END / 7.0, 0.1, 1.0][case % 3];
         let settings = Settings { t_end: T_END, step, correct_every, sample_every };
