@@ -13,6 +13,7 @@ mod compare;
 mod contacts;
 mod controllers;
 mod eigenvalues;
+mod equilibrium;
 mod events;
 mod export;
 pub mod failure;

@@ -227,6 +227,7 @@ fn approach(model: &Model, args: &SimulateArgs) -> Approach {
         budget: args.budget,
         patience: Some(PATIENCE),
         examine: args.verify || args.linearize.is_some(),
+        meets_knots: false,
     }
 }
 

@@ -26,6 +26,9 @@ pub struct Approach {
     pub patience: Option<f64>,
     /// Whether pivots are to be looked at, and the motion to be linearised about where it ends.
     pub examine: bool,
+    /// Whether steps of fixed length end at the knots of inputs and of motions, with each input as it is in the middle of
+    /// a step: for companions, which see what other steps may step over.
+    pub meets_knots: bool,
 }
 
 /// The method.

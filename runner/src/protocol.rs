@@ -122,6 +122,7 @@ mod tests {
                     budget: correct_every.map(|_| 7),
                     patience: correct_every,
                     examine: correct_every.is_some(),
+                    meets_knots: correct_every.is_none(),
                 },
                 parameters: vec![1.0 / 7.0],
                 start: Start {

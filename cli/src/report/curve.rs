@@ -117,6 +117,7 @@ impl Curve {
             budget,
             patience: None,
             examine: false,
+            meets_knots: false,
         }
     }
 }

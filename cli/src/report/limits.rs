@@ -289,6 +289,7 @@ pub(crate) fn find(
         budget: tolerance.map(|_: f64| 200_000),
         patience: None,
         examine: false,
+        meets_knots: false,
     };
     let plan = |t_end: f64, step: f64, approach| Plan {
         settings: Settings { t_end, step, correct_every: None, sample_every: t_end / SAMPLES },
