@@ -58,8 +58,15 @@ fn file(shape: &Shape) -> Option<&str> {
     }
 }
 
-/// The triangles of a file.
+/// The triangles of a file, as a picture needs them.
 pub(crate) fn mesh(path: &Path) -> io::Result<Mesh> {
+    let (vertices, triangles) = surface(path)?;
+    let empty = || io::Error::new(io::ErrorKind::InvalidData, "it has no triangles");
+    Mesh::new(&vertices, &triangles).ok_or_else(empty)
+}
+
+/// All vertices of a file, and all triangles of these.
+pub(crate) fn surface(path: &Path) -> io::Result<(Vec<[f32; 3]>, Vec<[u32; 3]>)> {
     let scene = parsed(told_apart(files::bytes(path, LARGEST)?), path)?;
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for part in &scene.meshes {
@@ -67,8 +74,7 @@ pub(crate) fn mesh(path: &Path) -> io::Result<Mesh> {
         vertices.extend_from_slice(&part.vertices);
         triangles.extend(part.faces.iter().map(|face| face.map(|k| k.saturating_add(first))));
     }
-    let empty = || io::Error::new(io::ErrorKind::InvalidData, "it has no triangles");
-    Mesh::new(&vertices, &triangles).ok_or_else(empty)
+    Ok((vertices, triangles))
 }
 
 /// Binary STL files may begin with the word by which the parser knows text, as their first 80 bytes are anything. They
