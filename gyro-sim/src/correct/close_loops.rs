@@ -1,8 +1,6 @@
 //! The correction of loops in joint coordinates.
 
-use super::{
-    CONVERGED_EPSILONS, Correction, FARTHEST, MAX_ITERATIONS, check_finite, is_slip, normalise, reach,
-};
+use super::{CONVERGED_EPSILONS, Correction, FARTHEST, MAX_ITERATIONS, check_finite, normalise, reach};
 use crate::pivoting::is_resolvable;
 use crate::violation::{Violation, closure_violation};
 use crate::{
@@ -89,9 +87,6 @@ impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
             if worst.value <= tolerance || worst.value <= tolerance * self.magnitude(mechanism, t, x) {
                 return Ok(());
             }
-        }
-        if is_slip(worst.value, tolerance * self.magnitude(mechanism, t, x)) {
-            return Ok(());
         }
         let owner = worst.owner.unwrap_or(Owner::Body(0));
         Err(Error::NoConvergence { t: t.to_f64(), violation: worst.value.to_f64(), owner })

@@ -121,15 +121,6 @@ pub(crate) const MAX_ITERATIONS: u32 = 10;
 /// is judged by what it subtracts: see [`Partition::is_met`](crate::Partition::is_met).
 pub(crate) const CONVERGED_EPSILONS: f64 = 16.0;
 
-/// Whether what no iteration makes smaller is a slip of the last digits of numbers that rows have which depend on each
-/// other: there is no pose then at which all of them are met.
-pub(crate) fn is_slip<T: Real>(violation: T, tolerance: T) -> bool {
-    violation <= tolerance * T::constant(SLIPS)
-}
-
-/// In units of what corrections leave.
-const SLIPS: f64 = 16.0;
-
 /// A change of more than this many radians, or lengths in units of the mechanism's size, leads to another pose and is
 /// refused.
 pub(crate) const FARTHEST: f64 = 0.5;

@@ -1,6 +1,6 @@
 //! The paper's two algorithms: direct integration and coordinate partitioning.
 
-use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, check_finite, check_time, is_slip, reach};
+use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, check_finite, check_time, reach};
 use crate::contract::Storage;
 use crate::violation::{Violation, constraint_violation};
 use crate::{
@@ -117,9 +117,6 @@ impl<M: Partition<Scalar: Real>> Partitioning<M> {
             if mechanism.is_met(t, y, &self.phi) {
                 return Ok(());
             }
-        }
-        if is_slip(worst.value, tolerance * reach(mechanism, y)) || is_slip(worst.value, tolerance) {
-            return Ok(());
         }
         let owner = worst.owner.unwrap_or(Owner::Body(0));
         Err(Error::NoConvergence { t: t.to_f64(), violation: worst.value.to_f64(), owner })

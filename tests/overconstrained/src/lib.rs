@@ -42,7 +42,7 @@ pub struct Axis {
 }
 
 /// The kinds of loops.
-pub const KINDS: [&str; 11] = [
+pub const KINDS: [&str; 10] = [
     "bennett",
     "goldberg-5r",
     "myard",
@@ -50,7 +50,6 @@ pub const KINDS: [&str; 11] = [
     "plane-symmetric",
     "trihedral",
     "octahedral-line",
-    "altmann",
     "sarrus",
     "planar",
     "spherical",
@@ -100,11 +99,6 @@ impl Loop {
                         offset: between(-0.3, 0.3),
                     })
                     .collect();
-                [half.clone(), half].concat()
-            }
-            "altmann" => {
-                let (a, b) = (between(0.5, 1.0), between(0.5, 1.0));
-                let half = vec![link(a, FRAC_PI_2), link(0.0, FRAC_PI_2), link(b, FRAC_PI_2)];
                 [half.clone(), half].concat()
             }
             "plane-symmetric" => {
