@@ -87,12 +87,6 @@ fn square(graph: &mut Graph, matrix: &[Vec<ExprId>]) -> Vec<Vec<ExprId>> {
 
 /// From its lower triangle.
 fn symmetric(n: usize, mut entry: impl FnMut(usize, usize) -> ExprId) -> Vec<Vec<ExprId>> {
-    let mut matrix = vec![vec![Graph::ZERO; n]; n];
-    for k in 0..n {
-        for l in 0..=k {
-            matrix[k][l] = entry(k, l);
-            matrix[l][k] = matrix[k][l];
-        }
-    }
-    matrix
+    let lower: Vec<Vec<_>> = (0..n).map(|k| (0..=k).map(|l| entry(k, l)).collect()).collect();
+    (0..n).map(|k| (0..n).map(|l| lower[k.max(l)][k.min(l)]).collect()).collect()
 }
