@@ -292,7 +292,8 @@ second = { body = "ground", point = [-2.0, 0.0, -0.0], axis = [0.0, 1.0, 0.0], z
 #[test]
 fn a_bennett_of_whole_numbers_has_no_singular_pose() {
     let model = gyro_model::read("bennett.toml", SIDES_ONE_AND_TWO).expect("a good model file");
-    assert_eq!((model.rows().len(), model.degrees_of_freedom()), (20, 1));
+    // One of the twenty is the same combination of others everywhere.
+    assert_eq!((model.rows().len(), model.degrees_of_freedom()), (19, 1));
     let mechanism: Compiled<f64> =
         gyro_jit::compile(&model, &Functions::of_solvers(), Effort::Quick).expect("a mechanism");
     let y = mechanism.start();
