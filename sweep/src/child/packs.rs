@@ -68,7 +68,7 @@ where
     G: Fn(&[f64x8]) -> P,
     C: Fn(&[f64]) -> Result<(), String>,
 {
-    fn run(&mut self, block: &mut Block, _: &[Result<Start, String>], _: &[StartSlopes]) {
+    fn run(&mut self, block: &mut Block, _: Outsets<'_>) {
         let own = std::mem::take(block);
         let tell = &mut |done| {
             *block = done;
