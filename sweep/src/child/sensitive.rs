@@ -3,7 +3,7 @@
 use super::joint::{Layout, flat, joint_start, write_start};
 use super::variational::{Closing, Number, Part, Parts, Variational};
 use super::watch::Watch;
-use super::{Common, Job, Runs, StartSlopes, note, packs, serve, whole};
+use super::{Common, Job, Outsets, Runs, StartSlopes, note, packs, serve, whole};
 use crate::Keep;
 use crate::plan::Target;
 use crate::record::Block;
