@@ -1,6 +1,8 @@
 //! Joint coordinates.
 
 use super::{Mechanism, Storage};
+use crate::Scalar;
+use crate::correct::normalise;
 #[cfg(feature = "wire")]
 use crate::wire::*;
 
@@ -160,6 +162,19 @@ impl JointLayout<'_> {
     pub fn n_rates(&self) -> usize {
         self.places.iter().map(|place| place.n_rates()).sum()
     }
+
+    /// Makes Euler parameters unit vectors. All that is computed of a joint state is the same before and after, but
+    /// the rates of Euler parameters, which are in proportion to them.
+    #[inline(always)]
+    pub fn normalise<T: Scalar>(&self, x: &mut [T]) {
+        let mut at = 0;
+        for place in self.places {
+            if let Some(euler) = place.euler() {
+                normalise(&mut x[at + euler..at + euler + 4]);
+            }
+            at += place.n_coordinates();
+        }
+    }
 }
 
 impl JointPlace {
@@ -169,6 +184,15 @@ impl JointPlace {
             Self::Scalar { .. } | Self::Turn { .. } => 1,
             Self::Orientation { .. } => 4,
             Self::Body { .. } => 7,
+        }
+    }
+
+    /// Where among these Euler parameters start, if there are any.
+    pub const fn euler(self) -> Option<usize> {
+        match self {
+            Self::Scalar { .. } | Self::Turn { .. } => None,
+            Self::Orientation { .. } => Some(0),
+            Self::Body { .. } => Some(3),
         }
     }
 
