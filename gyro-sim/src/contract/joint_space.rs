@@ -12,6 +12,7 @@ use crate::wire::*;
 /// [`JointSpace::joint_layout`] lists them. x has, joint after joint in the order of the model file, each scalar
 /// coordinate (an angle, rad, continuous over turns; a displacement, m), and then, of spherical joints and points on a
 /// line, the Euler parameters of the second body in the first's frame; after the joints, of each free body `r` and `p`.
+/// Euler parameters may have any length but zero: the rotation is that of `p / |p|`.
 /// u has their rates: of Euler parameters the angular velocity relative to the first body in the second's frame, rad/s,
 /// of free bodies `s` and `w'`. Coordinates that couplers, drivers or loops determine as functions of others and of
 /// time are not among them. Last in x come turn references of joints that close loops, where something depends on how
@@ -60,8 +61,8 @@ pub trait JointSpace: Mechanism {
 ///
 /// Generated trees can have them, and mechanisms with loops, or with joints that are not made of turns and
 /// displacements (screws, rods, points on a line), of up to eight rates; not where a third derivative of a table would
-/// be needed. They are the derivatives of the emitted functions as they stand, at unit Euler parameters in directions
-/// too in which the state cannot change (across their unit sphere).
+/// be needed. They are the derivatives of the emitted functions as they stand, of Euler parameters of any length and
+/// along them, too, where nothing changes but their own rates.
 pub trait JointJacobian: JointSpace {
     /// ∂f/∂x, n × n for a joint state of n numbers, row by row.
     type Jacobian: Storage<Self::Scalar>;
