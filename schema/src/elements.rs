@@ -245,6 +245,8 @@ pub(crate) struct Output {
     point: Option<Vector>,
     joint: Option<String>,
     driver: Option<String>,
+    coupler: Option<String>,
+    force: Option<String>,
 }
 
 #[derive(JsonSchema)]
@@ -257,6 +259,9 @@ enum OutputKind {
     Inertial,
     Reaction,
     Driver,
+    Coupler,
+    Spring,
+    Link,
     Energy,
     Power,
 }
