@@ -60,6 +60,7 @@ mod verdict;
 mod verify;
 mod words;
 pub mod write;
+mod xml;
 
 pub use args::{Cli, Command, Common, EXIT_CODES, VERSION};
 use failure::Failure;

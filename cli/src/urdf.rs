@@ -68,6 +68,7 @@ pub(crate) fn converted(args: &ImportArgs) -> Result<(String, Vec<String>), Fail
     let file = args.file.display().to_string();
     let text = files::input(&args.file, files::LARGEST_MODEL_FILE)
         .map_err(|e| Failure::Usage(format!("{file} cannot be read: {e}")))?;
+    xml::check(text.as_bytes()).map_err(|words| Failure::Usage(format!("{file}: {words}")))?;
     let root = if args.floating { Root::Floating } else { Root::Fixed };
     let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let ImportArgs { motors, armature, limits, .. } = *args;

@@ -19,8 +19,8 @@ pub struct Settings {
 /// Why settings cannot be followed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Impossible {
-    /// A setting is not a positive number.
-    NotPositive {
+    /// A setting is not a positive number of seconds, or a time that nobody waits for.
+    NoTime {
         /// Name of the setting.
         setting: &'static str,
         /// Its value.
@@ -60,6 +60,9 @@ pub struct Schedule {
     next_sample: u64,
     next_correction: u64,
 }
+
+/// The longest time that a setting may be, s: thirty million years. Sums and powers of it are far from the ends of `f64`.
+const LONGEST: f64 = 1e15;
 
 /// A year of steps at a microsecond each is 3e13.
 const MOST_STEPS: f64 = 1e13;
@@ -158,8 +161,9 @@ impl Iterator for Schedule {
 impl fmt::Display for Impossible {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotPositive { setting, value } => {
-                write!(f, "{setting} is {value:?}: a positive number of seconds was expected")
+            Self::NoTime { setting, value } => {
+                write!(f, "{setting} is {value:?}: a positive number of seconds was expected")?;
+                if *value > LONGEST { write!(f, ", at most {LONGEST:e}") } else { Ok(()) }
             }
             Self::TooMany { what, number, most } => {
                 write!(f, "the run would have {number:.3e} {what}: at most {most:e} are accepted")
@@ -177,7 +181,7 @@ fn multiple(index: u64, interval: f64) -> f64 {
 }
 
 fn positive(setting: &'static str, value: f64) -> Result<(), Impossible> {
-    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(Impossible::NotPositive { setting, value }) }
+    if value > 0.0 && value <= LONGEST { Ok(()) } else { Err(Impossible::NoTime { setting, value }) }
 }
 
 fn at_most(what: &'static str, number: f64, most: f64) -> Result<(), Impossible> {
@@ -274,6 +278,10 @@ mod tests {
             (Settings { step: -1.0, ..good }, "step is -1.0: a positive number of seconds was expected"),
             (Settings { t_end: f64::NAN, ..good }, "t_end is NaN: a positive number of seconds was expected"),
             (Settings { correct_every: Some(0.0), ..good }, "correct_every is 0.0: a positive number"),
+            (
+                Settings { correct_every: Some(1e50), ..good },
+                "correct_every is 1e50: a positive number of seconds was expected, at most 1e15",
+            ),
             (Settings { sample_every: 1e-9, ..good }, "the run would have 1.000e9 samples"),
             (Settings { step: 1e-300, ..good }, "the run would have 1.000e300 steps"),
         ] {
