@@ -22,7 +22,7 @@ fn placed(model: &Model, q: &[f64], body: usize) -> (Rotation3<f64>, Vector3<f64
 
 /// Of each joint the numbers of its reaction that something in the null space of the transposed Jacobian changes.
 fn by_singular_values(model: &Model) -> Vec<[bool; 6]> {
-    let (start, kinematics) = (model.assemble().unwrap(), Kinematics::at(model, 0.0));
+    let (start, kinematics) = (model.assemble().expect("a good model file"), Kinematics::at(model, 0.0));
     let near: Vec<Vec<f64>> = start.joints.iter().map(|joint| joint.position.clone()).collect();
     let jacobian = kinematics.jacobian(&start.q, &near);
     let n = jacobian.nrows();
@@ -30,7 +30,7 @@ fn by_singular_values(model: &Model) -> Vec<[bool; 6]> {
         if column < jacobian.ncols() { jacobian[(row, column)] } else { 0.0 }
     });
     let svd = square.svd(true, false);
-    let (u, largest) = (svd.u.unwrap(), svd.singular_values.max());
+    let (u, largest) = (svd.u.expect("a number"), svd.singular_values.max());
     let idle: Vec<DVector<f64>> = (0..n)
         .filter(|&k| svd.singular_values[k] < ZERO * largest)
         .map(|k| u.column(k).into_owned())
@@ -52,7 +52,7 @@ fn by_singular_values(model: &Model) -> Vec<[bool; 6]> {
             let own = kinematics.rows().iter().enumerate();
             let own = own.filter(|(_, row)| row.owner == gyro_model::RowOwner::Joint(joint));
             let six = own.fold(DVector::zeros(6), |sum, (row, _)| {
-                sum + jacobian.view((row, 6 * body.2.unwrap()), (1, 6)).transpose() * idle[row]
+                sum + jacobian.view((row, 6 * body.2.expect("a number")), (1, 6)).transpose() * idle[row]
             });
             let force = Vector3::new(six[0], six[1], six[2]);
             let torque = body.0 * Vector3::new(six[3], six[4], six[5]) + (body.1 - point).cross(&force);
@@ -68,7 +68,8 @@ fn by_singular_values(model: &Model) -> Vec<[bool; 6]> {
 
 fn found(model: &Model) -> Vec<[bool; 6]> {
     let mut all = vec![[false; 6]; model.joints.len()];
-    for (joint, changed) in analyse(model).unwrap().redundant.iter().flat_map(|dropped| dropped.loads.clone())
+    for (joint, changed) in
+        analyse(model).expect("a good model file").redundant.iter().flat_map(|dropped| dropped.loads.clone())
     {
         (0..6).for_each(|k| all[joint][k] |= changed[k]);
     }

@@ -70,7 +70,7 @@ pub(super) fn read(reader: &mut Reader, whole: &Section<'_>) -> Option<RunOption
         parsed
     });
     let budget = section.get("budget").and_then(|item| item.positive(reader));
-    (reader.mistakes.len() == before).then(|| RunOptions {
+    (reader.mistakes.len() == before).then_some(RunOptions {
         t_end,
         step,
         correct_every,
