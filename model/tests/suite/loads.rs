@@ -30,7 +30,7 @@ fn by_singular_values(model: &Model) -> Vec<[bool; 6]> {
         if column < jacobian.ncols() { jacobian[(row, column)] } else { 0.0 }
     });
     let svd = square.svd(true, false);
-    let (u, largest) = (svd.u.expect("a number"), svd.singular_values.max());
+    let (u, largest) = (svd.u.expect("it was asked for"), svd.singular_values.max());
     let idle: Vec<DVector<f64>> = (0..n)
         .filter(|&k| svd.singular_values[k] < ZERO * largest)
         .map(|k| u.column(k).into_owned())
@@ -52,7 +52,7 @@ fn by_singular_values(model: &Model) -> Vec<[bool; 6]> {
             let own = kinematics.rows().iter().enumerate();
             let own = own.filter(|(_, row)| row.owner == gyro_model::RowOwner::Joint(joint));
             let six = own.fold(DVector::zeros(6), |sum, (row, _)| {
-                sum + jacobian.view((row, 6 * body.2.expect("a number")), (1, 6)).transpose() * idle[row]
+                sum + jacobian.view((row, 6 * body.2.expect("it moves")), (1, 6)).transpose() * idle[row]
             });
             let force = Vector3::new(six[0], six[1], six[2]);
             let torque = body.0 * Vector3::new(six[3], six[4], six[5]) + (body.1 - point).cross(&force);
