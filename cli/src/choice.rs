@@ -51,6 +51,7 @@ pub(crate) fn choose(model: &Model, args: &SimulateArgs, offers: &Offers) -> (Ap
         patience: Some(PATIENCE),
         examine: args.verify || args.linearize.is_some(),
         leaves_stiff: false,
+        meets_knots: false,
     };
     let leaves_stiff = why.is_some() && integrator == Integrator::Dop853 && choice.can_turn(&approach);
     let chosen = Chosen { coordinates: of_coordinates, method: why.map(|why| by(&approach, &why)) };

@@ -18,6 +18,8 @@ pub enum Failure {
     Run(String),
     /// The command completed, but its result is worthless: exit status 3.
     Worthless(String),
+    /// The command completed, but what its result is worth cannot be said: exit status 4.
+    Unjudged(String),
     /// The command was interrupted, and has kept what it had: exit status 130.
     Interrupted(String),
 }
@@ -26,9 +28,11 @@ impl Failure {
     /// The message.
     pub fn words(&self) -> String {
         match self {
-            Self::Usage(words) | Self::Run(words) | Self::Worthless(words) | Self::Interrupted(words) => {
-                words.clone()
-            }
+            Self::Usage(words)
+            | Self::Run(words)
+            | Self::Worthless(words)
+            | Self::Unjudged(words)
+            | Self::Interrupted(words) => words.clone(),
             Self::ModelFile(mistakes) => mistakes.render(),
         }
     }
@@ -42,6 +46,7 @@ impl Failure {
             Self::ModelFile(mistakes) => (mistakes.render(), 2),
             Self::Run(words) => (format!("error: {words}\n"), 1),
             Self::Worthless(words) => (format!("error: {words}\n"), 3),
+            Self::Unjudged(words) => (format!("error: {words}\n"), 4),
             Self::Interrupted(words) => (format!("{words}\n"), INTERRUPTED),
         };
         // Nobody is left to be told if standard error is closed.

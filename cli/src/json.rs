@@ -1,5 +1,6 @@
 //! The summary as one JSON object.
 
+use crate::failure::Failure;
 use crate::scene::Scene;
 use crate::verdict::{self, Outcome, Verdict};
 use crate::{columns, events, linearization, remarks};
@@ -71,6 +72,20 @@ pub(crate) fn object(
         object["linearization"] = linearization::object(&scene.model, linear);
     }
     object
+}
+
+/// The verdict on a run that cannot be judged.
+pub(crate) fn unjudged(why: &Failure) -> Value {
+    json!({
+        "grade": "not judged",
+        "reason": why.words(),
+        "relative_error": null,
+        "estimated_errors": {},
+        "estimated_rate_errors": {},
+        "companion": null,
+        "advice": [],
+        "try": [],
+    })
 }
 
 /// For each joint its coordinates: numbers if there is a single one, else arrays in their order.

@@ -14,6 +14,7 @@ mod compare;
 mod contacts;
 mod controllers;
 mod eigenvalues;
+mod equilibrium;
 mod events;
 mod export;
 pub mod failure;

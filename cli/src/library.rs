@@ -237,17 +237,22 @@ impl Run {
     /// How far the run can be trusted, as with `--verify`: it is made again and looked at, and compared with others.
     ///
     /// # Errors
-    /// No other run comes to its end.
+    /// [`Failure::Interrupted`] once `stop` says so; the run itself fails.
     pub fn verdict(&self, stop: Stop<'_>) -> Result<Value, Failure> {
         let mut scene = Scene { has_companions: true, ..self.scene.clone() };
         scene.approach.examine = true;
         let outcome = outcome(&mut scene, &self.kernels, stop)?;
-        let verdict = verdict::verdict(&scene, &outcome, |companion| {
-            self::outcome(&mut companion.clone(), &self.kernels, stop)
-        })?;
-        let mut object = json::object(&scene, &outcome, (Some(&verdict), None), &[]);
-        object["verdict"]["text"] = json!(verdict::text(&verdict, &outcome));
-        Ok(object["verdict"].take())
+        let companion = |scene: &Scene| self::outcome(&mut scene.clone(), &self.kernels, stop);
+        let (mut found, text) = match verdict::verdict(&scene, &outcome, companion) {
+            Ok(verdict) => {
+                let mut object = json::object(&scene, &outcome, (Some(&verdict), None), &[]);
+                (object["verdict"].take(), verdict::text(&verdict, &outcome))
+            }
+            Err(why @ Failure::Unjudged(_)) => (json::unjudged(&why), verdict::unjudged(&why)),
+            Err(failure) => return Err(failure),
+        };
+        found["text"] = json!(text);
+        Ok(found)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::progress::Progress;
 use crate::quicker::Took;
 use crate::remarks::say;
 use crate::scene::Scene;
-use crate::verdict::{self, Outcome};
+use crate::verdict::{self, Outcome, Verdict};
 use crate::write::{self, Known};
 use crate::{
     columns, events, interrupt, json, linearization, nested, plot, quicker, remarks, summary, words,
@@ -33,23 +33,28 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         Some(folder) => write_files(&scene, &outcome, folder)?,
         None => Vec::new(),
     };
-    let verdict = match args.verify {
-        true => Some(verdict::verdict(&scene, &outcome, |companion| {
-            let mut other = Outcome::default();
-            run(&mut companion.clone(), &mut other).map(|()| other)
-        })?),
-        false => {
+    // Whatever becomes of the verdict, the run is told.
+    let (verdict, unjudged) = match args.verify.then(|| judged(&scene, &outcome)) {
+        Some(Ok(verdict)) => (Some(verdict), None),
+        Some(Err(failure)) => (None, Some(failure)),
+        None => {
             verdict::warnings(&scene, &outcome).iter().for_each(|words| remarks::warn(words));
-            None
+            (None, None)
         }
     };
-    let worthless = verdict::worthless(&scene, &outcome, verdict.as_ref());
+    let worthless = unjudged.or_else(|| verdict::worthless(&scene, &outcome, verdict.as_ref()));
+    let unjudged = worthless.as_ref().filter(|_| args.verify && verdict.is_none());
     let linear = outcome.linear.as_ref().filter(|_| args.linearize.is_some());
     let text = if args.json {
-        format!("{}\n", json::object(&scene, &outcome, (verdict.as_ref(), linear), &written))
+        let mut object = json::object(&scene, &outcome, (verdict.as_ref(), linear), &written);
+        if let Some(why) = unjudged {
+            object["verdict"] = json::unjudged(why);
+        }
+        format!("{object}\n")
     } else {
         let linear = linear.map_or(String::new(), |linear| linearization::text(&scene.model, linear));
-        let verdict = verdict.map_or(String::new(), |verdict| verdict::text(&verdict, &outcome));
+        let verdict = verdict.map(|verdict| verdict::text(&verdict, &outcome));
+        let verdict = verdict.or(unjudged.map(verdict::unjudged)).unwrap_or_default();
         summary::text(&scene, &outcome, &(verdict + &linear), &written)
     };
     say(&text)?;
@@ -59,6 +64,14 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         remarks::note(&words);
     }
     worthless.map_or(Ok(()), Err)
+}
+
+/// Judges a run by companions that are made as it was.
+fn judged(scene: &Scene, outcome: &Outcome) -> Result<Verdict, Failure> {
+    verdict::verdict(scene, outcome, |companion| {
+        let mut other = Outcome::default();
+        run(&mut companion.clone(), &mut other).map(|()| other)
+    })
 }
 
 /// Runs a scene, prints its summary and writes its table and plots to a folder.

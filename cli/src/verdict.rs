@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::quicker::Took;
 use crate::scene::Scene;
 use crate::words::{count, number, table};
-use crate::{columns, eigenvalues, remarks};
+use crate::{columns, eigenvalues, equilibrium, remarks};
 use gyro_model::{Model, RowOwner};
 use gyro_runner::motion::Linear;
 use gyro_runner::{
@@ -53,12 +53,15 @@ pub(crate) struct Outcome {
 /// only where there is no better one.
 ///
 /// # Errors
-/// No companion came to its end.
+/// [`Failure::Unjudged`] if no companion came to its end, or rounding alone decides the motion.
 pub(crate) fn verdict(
     scene: &Scene,
     outcome: &Outcome,
     mut run: impl FnMut(&Scene) -> Result<Outcome, Failure>,
 ) -> Result<Verdict, Failure> {
+    if let Some(words) = equilibrium::unstable(scene) {
+        return Err(Failure::Unjudged(words));
+    }
     let (mut doubtful, mut last) = (None, None);
     for companion in companions(scene) {
         match run(&companion) {
@@ -66,16 +69,17 @@ pub(crate) fn verdict(
                 return Ok(compare(scene, outcome, &companion, &other));
             }
             Ok(other) => doubtful = doubtful.or(Some((companion, other))),
+            Err(failure @ Failure::Interrupted(_)) => return Err(failure),
             Err(failure) => last = Some(failure),
         }
     }
     match (doubtful, last) {
         (Some((companion, other)), _) => Ok(compare(scene, outcome, &companion, &other)),
-        (None, Some(failure)) => Err(Failure::Run(format!(
+        (None, Some(failure)) => Err(Failure::Unjudged(format!(
             "the run is complete but cannot be judged, as no run to compare it with comes to its end: {}",
             failure.words()
         ))),
-        (None, None) => Err(Failure::Run("there is no finer run to compare with".to_owned())),
+        (None, None) => Err(Failure::Unjudged("there is no finer run to compare with".to_owned())),
     }
 }
 
@@ -86,6 +90,7 @@ fn companions(scene: &Scene) -> Vec<Scene> {
         let has_them = approach.coordinates != Coordinates::Joint || scene.engine.is_generated();
         let engine = if has_them { scene.engine } else { Engine::Generated };
         let approach = Approach { patience: None, leaves_stiff: false, ..approach };
+        let settings = gyro_runner::closely(&settings, &approach);
         Scene { precision: Precision::F64, engine, settings, approach, ..scene.clone() }
     };
     gyro_runner::companions(&scene.settings, &scene.approach).into_iter().map(double).collect()
@@ -227,6 +232,11 @@ pub(crate) fn row_owner(model: &Model, owner: Owner) -> RowOwner {
         Owner::Coupler(index) => RowOwner::Coupler(index.into()),
         Owner::Driver(index) => RowOwner::Driver(index.into()),
     }
+}
+
+/// That a run is not judged, in words.
+pub(crate) fn unjudged(why: &Failure) -> String {
+    format!("\nverdict\nnot judged: {}\n", why.words())
 }
 
 /// The verdict in words.

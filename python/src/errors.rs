@@ -29,7 +29,7 @@ pub(crate) fn raised(py: Python<'_>, failure: Failure) -> PyErr {
     match failure {
         Failure::Usage(words) => request(py, &words),
         Failure::ModelFile(mistakes) => model(py, &mistakes),
-        Failure::Run(words) | Failure::Worthless(words) => run(py, &words),
+        Failure::Run(words) | Failure::Worthless(words) | Failure::Unjudged(words) => run(py, &words),
         Failure::Interrupted(words) => PyKeyboardInterrupt::new_err(words),
     }
 }

@@ -32,7 +32,7 @@ pub fn companions(settings: &Settings, approach: &Approach) -> Vec<(Settings, Ap
         }
         None => (
             Settings { step: settings.step / 4.0, ..*settings },
-            Approach { budget: None, patience: None, ..*approach },
+            Approach { budget: None, patience: None, meets_knots: true, ..*approach },
         ),
     };
     let corrected = |correction| {
@@ -45,6 +45,22 @@ pub fn companions(settings: &Settings, approach: &Approach) -> Vec<(Settings, Ap
     companions.extend([Correction::Partition, Correction::MassWeighted].map(corrected));
     companions.extend((!is_corrected).then_some(finer));
     companions
+}
+
+/// A companion has so many samples at least, and so many times those of the run while these are not too many: what comes
+/// back at each sample of the run is seen to move between them.
+const LOOKS: f64 = 1024.0;
+const OFTEN: f64 = 13.0;
+const MANY: f64 = 100_000.0;
+
+/// A companion's settings with more samples, among them those of the run: the size of a motion is taken from them. Steps
+/// of fixed length are hardly shortened.
+pub fn closely(settings: &Settings, approach: &Approach) -> Settings {
+    let Settings { t_end, step, sample_every, .. } = *settings;
+    let n = t_end / sample_every;
+    let wanted = (LOOKS / n).max(OFTEN.min(MANY / n)).ceil().max(1.0);
+    let most = if approach.tolerance.is_none() { (sample_every / step).floor() } else { LOOKS };
+    Settings { sample_every: sample_every / wanted.min(most).max(1.0), ..*settings }
 }
 
 /// How far two runs differ in one joint coordinate, at worst over all samples.

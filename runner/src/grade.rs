@@ -36,6 +36,8 @@ pub enum Reason {
     Pivot(f64),
     /// Steps of fixed length have passed a singular pose; this is the first.
     Passage(Passage),
+    /// The run and its companion end at these times, s.
+    End([f64; 2]),
 }
 
 /// What a judgement depends on besides the runs.
@@ -76,6 +78,8 @@ const LOST: f64 = 0.3;
 const TOLERANCES: f64 = 10.0;
 /// An angle's error is held against no more than this, rad.
 const RADIAN: f64 = 1.0;
+/// A motion smaller than this is rest, and what is held against it rounding, rad or parts of the size, and per second.
+const STILL: f64 = 1e-10;
 /// A motion smaller than this part of the largest one is held against that for a grade of good.
 const SMALL: f64 = 1e-6;
 /// The same for a grade of worthless, at least and, under a coarse tolerance, at most.
@@ -106,6 +110,7 @@ impl Reason {
             Self::Pivot(pivot) => return if pivot >= SMALL_PIVOT { Grade::Good } else { Grade::Usable },
             Self::Energy(drift) => (GOOD, LOST, drift),
             Self::Violation(violation) => (GOOD, APART, violation),
+            Self::End([run, other]) => (GOOD, LOST, (run - other).abs() / other),
         };
         // What is not a number is worse than any.
         if value <= good {
@@ -130,21 +135,21 @@ fn sorted(mut reasons: Vec<Reason>) -> Vec<Reason> {
     reasons
 }
 
-/// Holds a run against a companion with the same samples.
+/// Holds a run against a companion that has its samples, and more of them perhaps.
 pub fn judge(
     (samples, summary): (&[Sample], &Summary),
     (others, other): (&[Sample], &Summary),
     measure: &Measure,
 ) -> Judgement {
-    let tracks = tracks(samples, others);
+    let (pairs, end) = paired(samples, others);
+    let tracks = tracks(samples, others, &pairs);
     let scale = Scale::of(&tracks, measure);
-    let is_complete = samples.len() == others.len();
     let relative = worst(tracks.iter().map(|track| scale.strict(track)));
     let lost = worst(tracks.iter().map(|track| scale.lenient(track)));
     let errors: Vec<Difference> = tracks.iter().map(Track::difference).collect();
     let tolerance = measure.tolerance.unwrap_or(1.0);
     let in_tolerances = worst(errors.iter().map(|error| error.in_tolerances(tolerance)));
-    let is_lost = lost > LOST || !is_complete;
+    let is_lost = lost > LOST;
     let is_near = relative <= GOOD;
     // Work may be lost where the motion is not, as a companion shows whose own balance closes.
     let closes = balance(other, measure.is_balanced).is_empty();
@@ -156,6 +161,7 @@ pub fn judge(
     reasons.extend(measure.tolerance.map(|_| Reason::Tolerance(in_tolerances)));
     reasons.extend(summary.smallest_pivot.map(Reason::Pivot));
     reasons.extend(summary.statistics.first_passage.map(Reason::Passage));
+    reasons.extend(end.map(Reason::End));
     reasons.retain(|reason| reason.grade() > Grade::Good);
     let of_errors = if is_lost {
         Grade::Worthless
@@ -168,7 +174,8 @@ pub fn judge(
     if is_lost {
         reasons.insert(0, Reason::Error(lost));
     }
-    let until = scale.until(&tracks, samples);
+    let times: Vec<f64> = pairs.iter().map(|(k, _)| samples[*k].t).collect();
+    let until = scale.until(&tracks, &times);
     let t_end = samples.last().map_or(0.0, |sample| sample.t);
     Judgement { t_end, grade, reasons: sorted(reasons), errors, relative, in_tolerances, until }
 }
@@ -178,77 +185,116 @@ fn worst(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |worst: f64, x| if x <= worst || worst.is_nan() { worst } else { x })
 }
 
+/// Times nearer than this part of the run are one.
+const SAME: f64 = 1e-12;
+
+/// Which samples of a run and of its companion belong together, by their times; and both ends, where they differ, as they
+/// do where an event ends the runs. The last samples then belong together, wherever other samples are.
+fn paired(samples: &[Sample], others: &[Sample]) -> (Vec<(usize, usize)>, Option<[f64; 2]>) {
+    let slack = SAME * samples.last().map_or(0.0, |last| last.t);
+    let (mut pairs, mut other) = (Vec::new(), 0);
+    for (k, sample) in samples.iter().enumerate() {
+        while others.get(other).is_some_and(|found| found.t < sample.t - slack) {
+            other += 1;
+        }
+        if others.get(other).is_some_and(|found| found.t <= sample.t + slack) {
+            pairs.push((k, other));
+        }
+    }
+    let (Some(last), Some(last_other)) = (samples.last(), others.last()) else { return (pairs, None) };
+    let ends = [last.t, last_other.t];
+    if (ends[0] - ends[1]).abs() <= slack {
+        return (pairs, None);
+    }
+    // The earlier end may be at a sample of the other run, which is no end.
+    let (k, other) = (samples.len() - 1, others.len() - 1);
+    pairs.retain(|pair| pair.0 != k && pair.1 != other);
+    pairs.push((k, other));
+    (pairs, Some(ends))
+}
+
 /// One coordinate over the samples.
 struct Track {
     is_length: bool,
-    /// Error of position and of rate at each sample, and how far the companion has gone and how fast it is.
-    positions: Vec<[f64; 2]>,
-    rates: Vec<[f64; 2]>,
+    /// Errors of position and of rate at each sample of the run.
+    errors: Vec<[f64; 2]>,
+    /// How far the companion has gone and how fast it is, at each of its samples.
+    moves: Vec<[f64; 2]>,
     /// The companion's largest position.
     size: f64,
 }
 
+/// Position and rate.
+const POSITION: usize = 0;
+const RATE: usize = 1;
+
 impl Track {
-    fn new(one: &[JointSample], other: &[JointSample]) -> Self {
-        let pairs = || one.iter().zip(other);
+    fn new(one: &[JointSample], other: &[JointSample], pairs: &[(usize, usize)]) -> Self {
         let still = [0.0; 3];
+        let error = |(k, l): &(usize, usize)| {
+            let (a, b) = (&one[*k], &other[*l]);
+            [distance(a, b), gap(&rate(a), &rate(b))]
+        };
         Self {
             is_length: matches!(other.first(), Some(JointSample::Length { .. })),
-            positions: pairs().map(|(a, b)| [distance(a, b), departure(&other[0], b)]).collect(),
-            rates: pairs().map(|(a, b)| [gap(&rate(a), &rate(b)), gap(&rate(b), &still)]).collect(),
+            errors: pairs.iter().map(error).collect(),
+            moves: other.iter().map(|b| [departure(&other[0], b), gap(&rate(b), &still)]).collect(),
             size: worst(other.iter().map(size)),
         }
     }
 
-    fn largest(pairs: &[[f64; 2]], which: usize) -> f64 {
-        worst(pairs.iter().map(|pair| pair[which]))
+    fn largest(numbers: &[[f64; 2]], which: usize) -> f64 {
+        worst(numbers.iter().map(|pair| pair[which]))
     }
 
     #[expect(clippy::cast_precision_loss, reason = "a number of samples")]
-    fn mean(pairs: &[[f64; 2]], which: usize) -> f64 {
-        (pairs.iter().map(|pair| pair[which].powi(2)).sum::<f64>() / pairs.len().max(1) as f64).sqrt()
+    fn mean(numbers: &[[f64; 2]], which: usize) -> f64 {
+        (numbers.iter().map(|pair| pair[which].powi(2)).sum::<f64>() / numbers.len().max(1) as f64).sqrt()
     }
 
     fn difference(&self) -> Difference {
         Difference {
-            position: Self::largest(&self.positions, 0),
-            rate: Self::largest(&self.rates, 0),
-            largest: [self.size, Self::largest(&self.rates, 1)],
+            position: Self::largest(&self.errors, POSITION),
+            rate: Self::largest(&self.errors, RATE),
+            largest: [self.size, Self::largest(&self.moves, RATE)],
         }
     }
 }
 
 /// Joint coordinates, then the bodies that were observed.
-fn tracks(samples: &[Sample], others: &[Sample]) -> Vec<Track> {
+fn tracks(samples: &[Sample], others: &[Sample], pairs: &[(usize, usize)]) -> Vec<Track> {
     let n = samples.first().map_or(0, |sample| sample.coordinates.len());
     let joints = (0..n).map(|k| {
         let of = |samples: &[Sample]| samples.iter().map(|s| s.coordinates[k]).collect::<Vec<_>>();
-        Track::new(&of(samples), &of(others))
+        Track::new(&of(samples), &of(others), pairs)
     });
     let n_bodies = samples.first().map_or(0, |sample| sample.bodies.len());
     let bodies = (0..n_bodies).flat_map(|k| {
         let of = |samples: &[Sample]| samples.iter().map(|s| s.bodies[k]).collect::<Vec<_>>();
-        [body_track(&of(samples), &of(others)), orientation_track(&of(samples), &of(others))]
+        [of_body(&of(samples), &of(others), pairs), of_orientation(&of(samples), &of(others), pairs)]
     });
     joints.chain(bodies).collect()
 }
 
-fn body_track(one: &[BodySample], other: &[BodySample]) -> Track {
-    let pairs = || one.iter().zip(other);
+fn of_body(one: &[BodySample], other: &[BodySample], pairs: &[(usize, usize)]) -> Track {
     let (r, s) = (
         |b: &BodySample| [b.pose[0], b.pose[1], b.pose[2]],
         |b: &BodySample| [b.velocity[0], b.velocity[1], b.velocity[2]],
     );
     let still = [0.0; 3];
+    let error = |(k, l): &(usize, usize)| {
+        let (a, b) = (&one[*k], &other[*l]);
+        [gap(&r(a), &r(b)), gap(&s(a), &s(b))]
+    };
     Track {
         is_length: true,
-        positions: pairs().map(|(a, b)| [gap(&r(a), &r(b)), gap(&r(b), &r(&other[0]))]).collect(),
-        rates: pairs().map(|(a, b)| [gap(&s(a), &s(b)), gap(&s(b), &still)]).collect(),
+        errors: pairs.iter().map(error).collect(),
+        moves: other.iter().map(|b| [gap(&r(b), &r(&other[0])), gap(&s(b), &still)]).collect(),
         size: worst(other.iter().map(|b| gap(&r(b), &still))),
     }
 }
 
-fn orientation_track(one: &[BodySample], other: &[BodySample]) -> Track {
+fn of_orientation(one: &[BodySample], other: &[BodySample], pairs: &[(usize, usize)]) -> Track {
     let orientation = |bodies: &[BodySample]| -> Vec<JointSample> {
         let of = |b: &BodySample| JointSample::Orientation {
             position: [b.pose[3], b.pose[4], b.pose[5], b.pose[6]],
@@ -256,7 +302,7 @@ fn orientation_track(one: &[BodySample], other: &[BodySample]) -> Track {
         };
         bodies.iter().map(of).collect()
     };
-    Track::new(&orientation(one), &orientation(other))
+    Track::new(&orientation(one), &orientation(other), pairs)
 }
 
 /// The largest motion of the companion: what small ones are held against.
@@ -277,9 +323,9 @@ impl Scale {
         };
         let [least, most] = NEGLIGIBLE;
         Self {
-            angle: all(&|track| Track::largest(&track.positions, 1)).min(RADIAN),
-            rate: all(&|track| Track::largest(&track.rates, 1)),
-            mean_rate: all(&|track| Track::mean(&track.rates, 1)),
+            angle: all(&|track| Track::largest(&track.moves, POSITION)).min(RADIAN),
+            rate: all(&|track| Track::largest(&track.moves, RATE)),
+            mean_rate: all(&|track| Track::mean(&track.moves, RATE)),
             size,
             negligible: measure
                 .tolerance
@@ -293,33 +339,33 @@ impl Scale {
     }
 
     fn strict(&self, track: &Track) -> f64 {
-        let motion = Track::largest(&track.positions, 1);
+        let motion = Track::largest(&track.moves, POSITION);
         let motion = if track.is_length { motion } else { motion.min(RADIAN) };
-        let position = Track::largest(&track.positions, 0);
-        let rate = Track::largest(&track.rates, 0);
-        ratio(position, motion.max(SMALL * self.in_unit(track, self.angle)))
-            .max(ratio(rate, Track::largest(&track.rates, 1).max(SMALL * self.in_unit(track, self.rate))))
+        let rates = Track::largest(&track.moves, RATE);
+        let [position, rate] = [POSITION, RATE].map(|which| Track::largest(&track.errors, which));
+        ratio(position, motion.max(self.in_unit(track, STILL.max(SMALL * self.angle))))
+            .max(ratio(rate, rates.max(self.in_unit(track, STILL.max(SMALL * self.rate)))))
     }
 
     fn lenient(&self, track: &Track) -> f64 {
-        let rate = Track::mean(&track.rates, 1).max(self.negligible * self.in_unit(track, self.mean_rate));
-        ratio(Track::largest(&track.positions, 0), self.reach(track))
-            .max(ratio(Track::mean(&track.rates, 0), rate))
+        let least = self.in_unit(track, STILL.max(self.negligible * self.mean_rate));
+        let rate = Track::mean(&track.moves, RATE).max(least);
+        ratio(Track::largest(&track.errors, POSITION), self.reach(track))
+            .max(ratio(Track::mean(&track.errors, RATE), rate))
     }
 
     /// The motion that an error is held against before a coordinate counts as lost.
     fn reach(&self, track: &Track) -> f64 {
-        Track::largest(&track.positions, 1).max(self.negligible * self.in_unit(track, self.angle))
+        Track::largest(&track.moves, POSITION)
+            .max(self.in_unit(track, STILL.max(self.negligible * self.angle)))
     }
 
     /// The time of the last sample before a coordinate is lost.
-    fn until(&self, tracks: &[Track], samples: &[Sample]) -> f64 {
+    fn until(&self, tracks: &[Track], times: &[f64]) -> f64 {
         let is_lost = |k: usize| {
-            let mut ratios = tracks.iter().map(|track| (track.positions.get(k), self.reach(track)));
-            ratios.any(|(pair, reach)| pair.is_none_or(|pair| ratio(pair[0], reach) > LOST))
+            tracks.iter().any(|track| ratio(track.errors[k][POSITION], self.reach(track)) > LOST)
         };
-        let kept = (0..samples.len()).take_while(|&k| !is_lost(k)).last();
-        kept.map_or(0.0, |k| samples[k].t)
+        (0..times.len()).take_while(|&k| !is_lost(k)).last().map_or(0.0, |k| times[k])
     }
 }
 

@@ -37,7 +37,7 @@ mod watch;
 
 pub use advice::{Advice, Change, Plan};
 pub use approach::{Approach, Coordinates, Correction, Integrator, When};
-pub use companion::{Difference, companions, differences};
+pub use companion::{Difference, closely, companions, differences};
 pub use control::{Controller, Seen, Wiring};
 pub use failure::{Failure, describe, describe_in};
 pub use forecast::{Forecast, duration_words};

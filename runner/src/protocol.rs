@@ -125,6 +125,7 @@ mod tests {
                     patience: correct_every,
                     examine: correct_every.is_some(),
                     leaves_stiff: correct_every.is_none(),
+                    meets_knots: correct_every.is_none(),
                 },
                 parameters: vec![1.0 / 7.0],
                 start: Start {

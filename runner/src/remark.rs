@@ -195,6 +195,7 @@ impl Plan<'_> {
                 "The smallest pivot of the constraints was {pivot:.1e}: the mechanism has come near a singular pose, from which it may \
                  go on in more than one way."
             ),
+            Reason::End(_) => in_words(reason),
             Reason::Error(_) | Reason::Tolerance(_) => return None,
         };
         Some(Remark::words(words))
@@ -248,6 +249,9 @@ pub(crate) fn in_words(reason: &Reason) -> String {
         Reason::Tolerance(times) => format!("The errors are {times:.1e} times the tolerance."),
         Reason::Work(drift) => format!("The work is off by {drift:.1e} of the energy that moves."),
         Reason::Pivot(pivot) => format!("The smallest pivot is {pivot:.1e}."),
+        Reason::End([run, other]) => format!(
+            "An event ends the run at t = {run:.6e} s, and the run that it is compared with ends at t = {other:.6e} s."
+        ),
         Reason::Passage(passage) => format!(
             "At t = {:.4} s steps of fixed length have passed a singular pose, from which the mechanism may have gone on in another way.",
             passage.t

@@ -292,6 +292,10 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     mechanism: &'a mut M,
     motion: Box<dyn Motion<M>>,
     inputs: &'a [Input],
+    /// Times at which the mechanism's own motions are not smooth, s.
+    own_knots: &'a [f64],
+    /// The part of a step of fixed length at which inputs are taken.
+    taken_at: f64,
     controllers: Controllers<M::Scalar>,
     watches: Watches<M::Scalar>,
     paths: Paths,
@@ -319,6 +323,8 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
         Self {
             motion,
             inputs: &start.inputs,
+            own_knots: &start.knots,
+            taken_at: if approach.meets_knots { 0.5 } else { 0.0 },
             controllers: Controllers::new(&start.controllers),
             watches: Watches::new(&start.watches),
             steps_at_once: if any_varies(&start.inputs)
@@ -350,7 +356,8 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
     ) -> Result<(), Halt> {
         let mut tracker = Tracker::default();
         self.record(0.0, (builder, approach), &mut tracker, told)?;
-        for segment in Schedule::new(settings) {
+        let knots = if approach.meets_knots { self.knots() } else { Vec::new() };
+        for segment in Schedule::new(settings).ending_at(knots) {
             match approach.tolerance {
                 None => self.advance(&segment, told)?,
                 Some(_) => self.advance_beyond(segment.to, (settings, approach), told)?,
@@ -400,8 +407,15 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
         builder.linearise(self.mechanism, &OperatingPoint { t, y: &self.y, angles: &angles, inputs: &inputs })
     }
 
-    fn set_inputs(&mut self) {
-        let t = self.motion.time();
+    /// All times at which something is not smooth.
+    fn knots(&self) -> Vec<f64> {
+        let of_inputs = self.inputs.iter().flat_map(Input::knots);
+        of_inputs.chain(self.own_knots.iter().chain(self.paths.kinks()).copied()).collect()
+    }
+
+    /// As inputs are in a step of this length.
+    fn set_inputs(&mut self, h: f64) {
+        let t = self.motion.time() + self.taken_at * h;
         set(self.mechanism, self.inputs, t);
         if any_varies(self.inputs) {
             for input in self.inputs {

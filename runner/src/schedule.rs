@@ -59,6 +59,8 @@ pub struct Schedule {
     now: f64,
     next_sample: u64,
     next_correction: u64,
+    /// Further times at which steps end, ascending.
+    knots: Vec<f64>,
 }
 
 /// The longest time that a setting may be, s: thirty million years, far from the ends of `f64`.
@@ -99,7 +101,20 @@ impl Settings {
 impl Schedule {
     /// The schedule of checked settings.
     pub fn new(settings: &Settings) -> Self {
-        Self { settings: *settings, now: 0.0, next_sample: 1, next_correction: 1 }
+        Self { settings: *settings, now: 0.0, next_sample: 1, next_correction: 1, knots: Vec::new() }
+    }
+
+    /// The same with steps that end at these times, too.
+    pub(crate) fn ending_at(mut self, mut knots: Vec<f64>) -> Self {
+        knots.sort_by(f64::total_cmp);
+        self.knots = knots;
+        self
+    }
+
+    /// The next of these times.
+    fn knot(&self) -> f64 {
+        let now = self.now + self.tolerance(self.now);
+        self.knots.get(self.knots.partition_point(|knot| *knot <= now)).copied().unwrap_or(f64::INFINITY)
     }
 
     /// Steps of a whole run: counted where there are few events, and at most so many where there are more.
@@ -141,13 +156,14 @@ impl Iterator for Schedule {
         }
         let sample = multiple(self.next_sample, sample_every);
         let correction = correct_every.map_or(f64::INFINITY, |every| multiple(self.next_correction, every));
-        let earliest = sample.min(correction).min(t_end);
+        let earliest = sample.min(correction).min(t_end).min(self.knot());
         let is_due = |t: f64| t - earliest <= self.tolerance(earliest);
         let (ends, samples, corrects) = (is_due(t_end), is_due(sample), is_due(correction));
-        let to = match (ends, samples) {
-            (true, _) => t_end,
-            (false, true) => sample,
-            (false, false) => correction,
+        let to = match (ends, samples, corrects) {
+            (true, ..) => t_end,
+            (false, true, _) => sample,
+            (false, false, true) => correction,
+            (false, false, false) => earliest,
         };
         let segment =
             Segment { from: self.now, to, n_steps: self.n_steps(to), corrects, samples: samples || ends };

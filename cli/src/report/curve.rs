@@ -118,6 +118,7 @@ impl Curve {
             patience: None,
             examine: false,
             leaves_stiff: false,
+            meets_knots: false,
         }
     }
 }

@@ -290,6 +290,7 @@ pub(crate) fn find(
         patience: None,
         examine: false,
         leaves_stiff: false,
+        meets_knots: false,
     };
     let plan = |t_end: f64, step: f64, approach| Plan {
         settings: Settings { t_end, step, correct_every: None, sample_every: t_end / SAMPLES },

@@ -26,8 +26,8 @@ class Verdict:
     """How far a run can be trusted, by comparison with another one of the same mechanism."""
 
     grade: str
-    """"good", "usable" or "worthless"."""
-    relative_error: float
+    """"good", "usable", "worthless" or "not judged", with `details["reason"]`."""
+    relative_error: float | None
     """The largest error over the size of its motion."""
     errors: dict[str, float]
     """Estimated error of each coordinate: rad, m."""
@@ -46,6 +46,8 @@ class Verdict:
         return self.text
 
     def __repr__(self) -> str:
+        if self.relative_error is None:
+            return f"<Verdict {self.grade}>"
         return f"<Verdict {self.grade}: errors up to {self.relative_error:.2g} of the motion>"
 
 

@@ -30,7 +30,7 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
                 let steps = self.motion.statistics().accepted;
                 return Err(Error::TooManySteps { t: self.motion.time(), steps }.into());
             }
-            self.set_inputs();
+            self.set_inputs(h);
             let began = Instant::now();
             self.control()?;
             self.resolve(told)?;

@@ -1,4 +1,5 @@
 mod inputs;
+mod judged;
 
 use super::*;
 use crate::JointSample;

@@ -5,7 +5,7 @@ use crate::keep::Keeper;
 use crate::record::Block;
 use gyro_runner::motion::MotionBuilder;
 use gyro_runner::{
-    Approach, Event, Failure, Measure, Sample, Settings, Start, Summary, companions, judge, run_by,
+    Approach, Event, Failure, Measure, Sample, Settings, Start, Summary, closely, companions, judge, run_by,
 };
 use gyro_sim::{Partition, Real};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -123,6 +123,7 @@ fn run_judged<M: Partition<Scalar: Real> + Clone + 'static>(
     samples.iter().for_each(|sample| keeper.sample(sample));
     let measure = Measure { tolerance: job.approach.tolerance, size, is_balanced };
     for (settings, approach) in companions(&job.settings, &job.approach) {
+        let settings = closely(&settings, &approach);
         if let Ok((others, other)) = run(&settings, &Approach { patience: None, ..approach }) {
             keeper.estimate = judge((&samples, &summary), (&others, &other), &measure).relative;
             break;
