@@ -250,9 +250,28 @@ pub struct ImportArgs {
     /// input, LINK_force_x to LINK_torque_z
     #[arg(long, value_name = "LINK", value_delimiter = ',')]
     pub(crate) wrenches: Vec<String>,
+    /// Give these links, or `all` that move, outputs of their frames: LINK_pose and LINK_velocity
+    #[arg(long, value_name = "LINK", value_delimiter = ',')]
+    pub(crate) frames: Vec<String>,
+    /// Keep all numbers of the robot: inertias that no body has (of positive moments), angles close to right ones and
+    /// directions close to axes, which are otherwise taken for these
+    #[arg(long)]
+    pub(crate) as_written: bool,
+    /// Weigh the shapes of links whose mass or inertia is missing, or an inertia that no body has, at this density, kg/m3
+    #[arg(long, value_name = "DENSITY", value_parser = density)]
+    pub(crate) density: Option<f64>,
+    /// Leave these elements out, though the robot may be another mechanism without them
+    #[arg(long, value_name = "ELEMENT", value_delimiter = ',')]
+    pub(crate) ignore: Vec<String>,
     /// Overwrite a model file that an earlier import has written
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+/// A density that something has.
+fn density(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| *number > 0.0 && *number < 1e6);
+    number.ok_or_else(|| "write a density in kg/m3, such as 1000".to_owned())
 }
 
 /// A number of 0 or more.

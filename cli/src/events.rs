@@ -72,6 +72,9 @@ pub(crate) fn refuse_stops(model: &Model, what: &str) -> Result<(), Failure> {
     }
 }
 
+/// Events that a page marks at most.
+const SHOWN: usize = 2000;
+
 /// An occurrence in words: whose it is, what, and the rates before and after where there are some.
 struct Told<'m> {
     name: &'m str,
@@ -99,6 +102,15 @@ fn told<'m>(model: &'m Model, occurrence: &Occurrence) -> Told<'m> {
         What::Sticks { contact } => of_contact(contact, "sticks"),
         What::Slips { contact } => of_contact(contact, "slips"),
     }
+}
+
+/// When what happened, for pages: each of the run's events.
+pub(crate) fn times(model: &Model, occurrences: &[Occurrence]) -> Vec<(f64, String)> {
+    let one = |occurrence: &Occurrence| {
+        let told = told(model, occurrence);
+        (occurrence.t, format!("{} {}", told.name, told.what))
+    };
+    occurrences.iter().take(SHOWN).map(one).collect()
 }
 
 /// For each event and what it did: how often, when first and when last.

@@ -64,7 +64,7 @@ pub fn warnings(model: &Model) -> Vec<String> {
 pub fn import(path: &Path, options: &[String]) -> Result<(String, Vec<String>), Failure> {
     let file = path.display().to_string();
     match parsed("import", &file, options)? {
-        Command::Import(args) => urdf::converted(&args),
+        Command::Import(args) => urdf::converted(&args, "gyro_sim.from_urdf"),
         _ => unreachable!("`import` was asked for"),
     }
 }

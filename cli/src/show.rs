@@ -13,7 +13,7 @@ use crate::write::{self, Known};
 use crate::{remarks, simulate, words};
 use gyro_assembled::Recursive;
 use gyro_model::{Model, Output, OutputKind};
-use gyro_runner::{Approach, Coordinates, Correction, Integrator, Sample};
+use gyro_runner::{Approach, Coordinates, Correction, Integrator};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -81,10 +81,10 @@ fn written(args: &ShowArgs) -> Result<Written, Failure> {
         if args.reactions {
             add_reactions(&mut scene);
         }
-        let (samples, failure) = samples(&mut scene)?;
+        let (outcome, failure) = outcome(&mut scene)?;
         incomplete = incomplete.or(failure);
-        n_samples += samples.len();
-        shown.push(describe::scene(&scene, name, &samples, meshes));
+        n_samples += outcome.samples.len();
+        shown.push(describe::scene(&scene, name, &outcome, meshes));
     }
     let html = gyro_show::page(&shown[0].mechanism.name.clone(), &shown, live.as_ref());
     write::write(&path, &html, Known::Mark(gyro_show::MARK))?;
@@ -198,14 +198,14 @@ fn add_reactions(scene: &mut Scene) {
     add(&mut scene.page);
 }
 
-/// Runs a scene with all its bodies observed, free ones first as tables expect; beside the samples why it ended early.
-fn samples(scene: &mut Scene) -> Result<(Vec<Sample>, Option<String>), Failure> {
+/// Runs a scene with all its bodies observed, free ones first as tables expect; beside what it gave why it ended early.
+fn outcome(scene: &mut Scene) -> Result<(Outcome, Option<String>), Failure> {
     scene.start.observed_bodies =
         describe::observed(&scene.model).into_iter().map(|(slot, _)| slot).collect();
     let mut outcome = Outcome::default();
     match simulate::run(scene, &mut outcome) {
-        Ok(()) => Ok((outcome.samples, None)),
-        Err(Failure::Run(words)) if outcome.samples.len() > 1 => Ok((outcome.samples, Some(words))),
+        Ok(()) => Ok((outcome, None)),
+        Err(Failure::Run(words)) if outcome.samples.len() > 1 => Ok((outcome, Some(words))),
         Err(failure) => Err(failure),
     }
 }

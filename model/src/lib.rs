@@ -150,6 +150,8 @@ pub struct Body {
     /// The origin of the frame in which the model file gives points of the body, seen from the mass centre, m: not zero
     /// of bodies with point masses.
     pub frame: [Number; 3],
+    /// Whether the inertia may be one that no rigid body has: a principal moment above the sum of the others.
+    pub as_written: bool,
     /// Position of the mass centre in the global frame, m: of fixed bodies, and the start of free ones.
     pub position: [Number; 3],
     /// Euler parameters `(e0, e1, e2, e3)`, not necessarily of unit length: of fixed bodies, and the start of free

@@ -7,6 +7,8 @@ use crate::Number;
 pub struct Shape {
     /// What it is, and how large.
     pub kind: ShapeKind,
+    /// Its colour, red, green and blue, where the model file gives one.
+    pub color: Option<[u8; 3]>,
     /// Its centre in the body's frame, of a mesh the origin of its file, m.
     pub position: [Number; 3],
     /// Euler parameters of its frame in the body's, of any length.

@@ -149,8 +149,9 @@ def test_robots_are_read(tmp_path):
         <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
         <limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
     )
-    with pytest.warns(gyro.RunWarning, match="limits makes stops"):
+    with pytest.warns(gyro.RunWarning, match="limits makes stops") as told:
         arm = gyro.from_urdf(urdf, motors=True)
+    assert len(told) == 1 and arm.source.startswith("# Written by gyro_sim.from_urdf from arm.urdf")
     assert arm.joints == ["shoulder"] and list(arm.inputs) == ["shoulder_motor"]
     accelerations = arm.joint_accelerations([0.0], [0.0], [1.0])
     assert np.allclose(accelerations, 1 / (0.1 + 0.25))

@@ -173,6 +173,8 @@ struct Body {
     angular_velocity: Option<Vector>,
     /// How strongly the assembly of the start holds the body near its guess.
     assembly_weight: Option<Plain>,
+    /// The inertia is taken as it is, though a principal moment exceeds the sum of the others, as no rigid body's does.
+    as_written: Option<bool>,
     /// What it looks like; nothing is computed of it.
     shape: Option<Vec<Shape>>,
 }
@@ -193,6 +195,8 @@ struct Shape {
     mesh: Option<String>,
     /// By what the mesh's coordinates are multiplied to be in m: one number, or one for each axis.
     scale: Option<Scale>,
+    /// Its colour: a name that CSS has for one, or `#rrggbb`.
+    color: Option<String>,
     /// Its centre, m, in the body's frame.
     position: Option<Vector>,
     /// Euler parameters in the body's frame, of any length.

@@ -36,6 +36,9 @@ pub struct Body {
     pub name: String,
     /// Whether it moves.
     pub support: Support,
+    /// Whether it floats: no joint tells where it is.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub free: bool,
     /// Mass, kg; zero if it is not known.
     pub mass: f64,
     /// `[xx, yy, zz, xy, xz, yz]` about the mass centre, kg·m².
@@ -69,6 +72,9 @@ pub struct Shape {
     /// Which of the mechanism's meshes it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<usize>,
+    /// Its colour, `#rrggbb`, where it is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color: Option<String>,
     /// Its centre in the body's frame, of a mesh the origin of its coordinates, m.
     pub position: [f64; 3],
     /// Euler parameters `(e0, e1, e2, e3)` of its frame in the body's.

@@ -70,6 +70,8 @@ struct SceneHead<'a> {
     bodies: Vec<BodyHead>,
     columns: Vec<ColumnHead<'a>>,
     reactions: &'a [Reaction],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    events: &'a [(f64, String)],
     /// Which of the page's meshes those of the mechanism are.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     meshes: Vec<usize>,
@@ -94,7 +96,7 @@ struct ColumnHead<'a> {
 /// `meshes` are those of the whole page.
 fn head<'a>(scene: &'a Scene, meshes: &mut Vec<&'a Mesh>, bytes: &mut Vec<u8>) -> SceneHead<'a> {
     let Scene { name, mechanism, run } = scene;
-    let Run { times, poses, velocities, columns, reactions } = run;
+    let Run { times, poses, velocities, columns, reactions, events } = run;
     let time = pack(times, TIME, bytes);
     let body = |(b, poses): (usize, &Vec<[f64; 7]>)| BodyHead {
         pose: (0..7).map(|k| pack(&part(poses, k), POSE, bytes)).collect(),
@@ -120,7 +122,7 @@ fn head<'a>(scene: &'a Scene, meshes: &mut Vec<&'a Mesh>, bytes: &mut Vec<u8>) -
         })
     };
     let meshes = mechanism.meshes.iter().map(place).collect();
-    SceneHead { name, mechanism, n: times.len(), time, bodies, columns, reactions, meshes }
+    SceneHead { name, mechanism, n: times.len(), time, bodies, columns, reactions, events, meshes }
 }
 
 fn part<const N: usize>(rows: &[[f64; N]], k: usize) -> Vec<f64> {

@@ -29,6 +29,8 @@ pub struct Run {
     pub columns: Vec<Column>,
     /// Where the columns have reactions of joints.
     pub reactions: Vec<Reaction>,
+    /// What happened, and when, s.
+    pub events: Vec<(f64, String)>,
 }
 
 /// Six columns with the force (N) and the torque (N·m) that a joint exerts on its second body, in the first body's

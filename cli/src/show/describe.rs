@@ -3,7 +3,9 @@
 use super::efforts;
 use super::meshes::Meshes;
 use crate::columns::{self, orientation, scalar};
+use crate::events;
 use crate::scene::Scene;
+use crate::verdict::Outcome;
 use gyro_model::{
     Body, ForceKind, JointEnd, LoadFrame, Model, OutputKind, Shape, ShapeKind, Support, Vector,
 };
@@ -20,8 +22,10 @@ pub(crate) fn observed(model: &Model) -> Vec<(usize, usize)> {
 }
 
 /// What the page shows of a run.
-pub(crate) fn scene(scene: &Scene, name: String, samples: &[Sample], meshes: Meshes) -> gyro_show::Scene {
-    gyro_show::Scene { name, mechanism: mechanism(&scene.model, meshes), run: run(scene, samples) }
+pub(crate) fn scene(scene: &Scene, name: String, outcome: &Outcome, meshes: Meshes) -> gyro_show::Scene {
+    let events = events::times(&scene.model, &outcome.occurrences);
+    let run = Run { events, ..run(scene, &outcome.samples) };
+    gyro_show::Scene { name, mechanism: mechanism(&scene.model, meshes), run }
 }
 
 /// What the picture is made of.
@@ -56,6 +60,7 @@ fn described(model: &Model, meshes: &Meshes, body: &Body) -> gyro_show::Body {
             Support::Fixed | Support::Constrained => gyro_show::Support::Fixed,
             Support::Driven => gyro_show::Support::Driven,
         },
+        free: body.support == Support::Free,
         mass: model.value(&body.mass),
         inertia: model.values(&body.inertia),
         shapes: body.shapes.iter().map(|shape| drawn(model, meshes, shape)).collect(),
@@ -74,7 +79,8 @@ fn drawn(model: &Model, meshes: &Meshes, shape: &Shape) -> gyro_show::Shape {
         }
     };
     let orientation = upright(model.values(&shape.orientation));
-    gyro_show::Shape { kind, size, mesh, position: model.values(&shape.position), orientation }
+    let color = shape.color.map(|[red, green, blue]| format!("#{red:02x}{green:02x}{blue:02x}"));
+    gyro_show::Shape { kind, size, mesh, color, position: model.values(&shape.position), orientation }
 }
 
 /// Euler parameters of unit length; of none, the identity.
@@ -154,7 +160,8 @@ fn run(scene: &Scene, samples: &[Sample]) -> Run {
         velocities.push(velocity);
     }
     let (columns, reactions) = plotted(scene, samples);
-    Run { times: samples.iter().map(|s| s.t).collect(), poses, velocities, columns, reactions }
+    let times = samples.iter().map(|s| s.t).collect();
+    Run { times, poses, velocities, columns, reactions, events: Vec::new() }
 }
 
 fn pose(r: Vector, p: [f64; 4]) -> [f64; 7] {

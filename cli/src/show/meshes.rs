@@ -58,8 +58,15 @@ fn file(shape: &Shape) -> Option<&str> {
     }
 }
 
-/// The triangles of a file.
+/// The triangles of a file, as a picture needs them.
 pub(crate) fn mesh(path: &Path) -> io::Result<Mesh> {
+    let (vertices, triangles) = surface(path)?;
+    let empty = || io::Error::new(io::ErrorKind::InvalidData, "it has no triangles");
+    Mesh::new(&vertices, &triangles).ok_or_else(empty)
+}
+
+/// All vertices of a file, and all triangles of these.
+pub(crate) fn surface(path: &Path) -> io::Result<(Vec<[f32; 3]>, Vec<[u32; 3]>)> {
     let scene = parsed(whole(files::bytes(path, LARGEST)?, path)?, path)?;
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for part in &scene.meshes {
@@ -67,8 +74,7 @@ pub(crate) fn mesh(path: &Path) -> io::Result<Mesh> {
         vertices.extend_from_slice(&part.vertices);
         triangles.extend(part.faces.iter().map(|face| face.map(|k| k.saturating_add(first))));
     }
-    let empty = || io::Error::new(io::ErrorKind::InvalidData, "it has no triangles");
-    Mesh::new(&vertices, &triangles).ok_or_else(empty)
+    Ok((vertices, triangles))
 }
 
 /// The deepest nesting of elements in a file: the parser calls itself for each.
@@ -78,8 +84,10 @@ const DEEPEST: usize = 200;
 fn whole(bytes: Vec<u8>, path: &Path) -> io::Result<Vec<u8>> {
     let refused = |words: String| io::Error::new(io::ErrorKind::InvalidData, words);
     let is = |extension: &str| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension));
-    if is("dae") && depth(&bytes) > DEEPEST {
-        return Err(refused(format!("its elements are nested deeper than {DEEPEST}")));
+    if is("dae")
+        && let Some(words) = unreadable(&bytes)
+    {
+        return Err(refused(words));
     }
     let bytes = told_apart(bytes);
     let is_text = !is("stl") || bytes.starts_with(WORD);
@@ -89,6 +97,25 @@ fn whole(bytes: Vec<u8>, path: &Path) -> io::Result<Vec<u8>> {
         Some(claimed) => Err(refused(format!("it claims {claimed} triangles and has {there}"))),
         None => Ok(bytes),
     }
+}
+
+/// Why the parser cannot be given a text of COLLADA: it calls itself for each element within another, makes room for as
+/// many numbers as are claimed, and never ends with arrays of names.
+fn unreadable(text: &[u8]) -> Option<String> {
+    if depth(text) > DEEPEST {
+        return Some(format!("its elements are nested deeper than {DEEPEST}"));
+    }
+    let text = String::from_utf8_lossy(text);
+    let digits = |rest: &str| rest.trim_start_matches(['"', '\'', ' ']).split(|c: char| !c.is_ascii_digit()).next().map(str::to_owned);
+    let is_there = |count: &String| !count.is_empty() && count.parse().is_ok_and(|n: u64| n <= text.len() as u64);
+    for key in ["count", "offset", "stride"] {
+        let claims = text.split(&format!("{key}=")).skip(1).filter_map(digits);
+        if let Some(claimed) = claims.into_iter().find(|count| !is_there(count)) {
+            return Some(format!("it claims a {key} of {claimed}, more than it has characters"));
+        }
+    }
+    let names = ["<Name_array", "<IDREF_array"].into_iter().find(|names| text.contains(names));
+    names.map(|names| format!("{names}> is not read: skeletons are no surfaces"))
 }
 
 /// How deep the elements of an XML text are nested at most: an element opens where a name follows `<`, unless it ends
@@ -161,6 +188,10 @@ mod tests {
             "<a/><b></b>".repeat(1000)
         );
         assert!(whole(flat.into_bytes(), Path::new("flat.dae")).is_ok());
+        let claim = b"<COLLADA><triangles count=\"4000000000\"/></COLLADA>";
+        assert_eq!(refused(claim, "many.dae"), "it claims a count of 4000000000, more than it has characters");
+        let names = b"<COLLADA><Name_array count=\"1\">a</Name_array></COLLADA>";
+        assert_eq!(refused(names, "names.dae"), "<Name_array> is not read: skeletons are no surfaces");
 
         let binary = |count: u32, triangles: usize| {
             [&[0; 80][..], &count.to_le_bytes(), &vec![0; 50 * triangles]].concat()

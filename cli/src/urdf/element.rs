@@ -1,15 +1,18 @@
 //! Attributes of XML elements, with mistakes told by file, line and element.
 
 use super::angle::{Angles, at};
+use super::document::Node;
 use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Translation3, Vector3};
-use roxmltree::{Document, Node};
 use std::collections::BTreeMap;
 
 /// What is wrong with a file and what of it has no counterpart.
 #[derive(Debug)]
 pub(super) struct Findings<'d> {
     pub(super) file: &'d str,
-    pub(super) document: &'d Document<'d>,
+    /// Colours of materials by their names, as model files write them.
+    pub(super) colors: BTreeMap<String, String>,
+    /// Whether numbers stay as they are where others are likely meant.
+    pub(super) as_written: bool,
     pub(super) problems: Vec<String>,
     pub(super) remarks: Vec<String>,
     pub(super) angles: Angles,
@@ -25,26 +28,26 @@ const ZERO: f64 = 1e-12;
 
 impl Findings<'_> {
     /// A mistake at an element.
-    pub(super) fn problem(&mut self, node: Node<'_, '_>, words: &str) {
+    pub(super) fn problem(&mut self, node: Node<'_>, words: &str) {
         let line = self.at(node, words);
         self.problems.push(line);
     }
 
     /// A message about an element, with its place.
-    pub(super) fn at(&self, node: Node<'_, '_>, words: &str) -> String {
-        format!("{}:{}: {}: {words}", self.file, self.line(node), title(node))
+    pub(super) fn at(&self, node: Node<'_>, words: &str) -> String {
+        format!("{}:{}: {}: {words}", self.file, node.line(), title(node))
     }
 
     /// Something at an element that the model file does not have.
-    pub(super) fn remark(&mut self, node: Node<'_, '_>, words: &str) {
-        let line = format!("line {}: {}: {words}", self.line(node), title(node));
+    pub(super) fn remark(&mut self, node: Node<'_>, words: &str) {
+        let line = format!("line {}: {}: {words}", node.line(), title(node));
         self.remarks.push(line);
     }
 
     /// An element that the model file does not have.
-    pub(super) fn unused(&mut self, node: Node<'_, '_>) {
-        let line = self.line(node);
-        self.unused.entry(node.tag_name().name().to_owned()).or_default().push(line);
+    pub(super) fn unused(&mut self, node: Node<'_>) {
+        let line = node.line();
+        self.unused.entry(node.name().to_owned()).or_default().push(line);
     }
 
     /// All remarks, those on many elements as one.
@@ -56,13 +59,8 @@ impl Findings<'_> {
         remarks.chain(self.angles.remarks()).chain(self.unused.iter().map(unused)).collect()
     }
 
-    /// The line on which an element starts.
-    pub(super) fn line(&self, node: Node<'_, '_>) -> u32 {
-        self.document.text_pos_at(node.range().start).row
-    }
-
     /// An attribute that must be there.
-    pub(super) fn text<'n>(&mut self, node: Node<'n, '_>, name: &str) -> Option<&'n str> {
+    pub(super) fn text<'n>(&mut self, node: Node<'n>, name: &str) -> Option<&'n str> {
         let value = node.attribute(name);
         if value.is_none() {
             self.problem(node, &format!("the attribute `{name}` is missing"));
@@ -71,19 +69,19 @@ impl Findings<'_> {
     }
 
     /// A number that must be there.
-    pub(super) fn number(&mut self, node: Node<'_, '_>, name: &str) -> Option<f64> {
+    pub(super) fn number(&mut self, node: Node<'_>, name: &str) -> Option<f64> {
         self.text(node, name).and_then(|text| self.parsed(node, name, text))
     }
 
     /// A number, or its default.
-    pub(super) fn number_or(&mut self, node: Node<'_, '_>, name: &str, default: f64) -> Option<f64> {
+    pub(super) fn number_or(&mut self, node: Node<'_>, name: &str, default: f64) -> Option<f64> {
         node.attribute(name).map_or(Some(default), |text| self.parsed(node, name, text))
     }
 
     /// Three numbers, or their default.
     pub(super) fn vector_or(
         &mut self,
-        node: Node<'_, '_>,
+        node: Node<'_>,
         name: &str,
         default: [f64; 3],
     ) -> Option<Vector3<f64>> {
@@ -100,24 +98,27 @@ impl Findings<'_> {
 
     /// The pose of an `<origin>` among an element's children: `xyz`, and `rpy`, rotations about the fixed x, y and z
     /// axes in this order.
-    pub(super) fn origin(&mut self, node: Node<'_, '_>) -> Option<IsometryMatrix3<f64>> {
-        let Some(origin) = child(node, "origin") else { return Some(IsometryMatrix3::identity()) };
+    pub(super) fn origin(&mut self, node: Node<'_>) -> Option<IsometryMatrix3<f64>> {
+        let Some(origin) = node.child("origin") else { return Some(IsometryMatrix3::identity()) };
         let xyz = self.vector_or(origin, "xyz", [0.0; 3]);
         let rpy = self.vector_or(origin, "rpy", [0.0; 3]);
         let (xyz, mut rpy) = (xyz?, rpy?);
-        let line = self.line(origin);
+        let line = origin.line();
         let words = origin.attribute("rpy").unwrap_or_default().split_whitespace();
-        for (angle, written) in rpy.iter_mut().zip(words) {
+        for (angle, written) in rpy.iter_mut().zip(words).filter(|_| !self.as_written) {
             *angle = self.angles.meant(written, *angle, line);
         }
-        let xyz = xyz.map(|x| if x.abs() < ZERO { 0.0 } else { x });
+        let xyz = xyz.map(|x| if x.abs() < ZERO && !self.as_written { 0.0 } else { x });
         let rotation = Rotation3::from_euler_angles(rpy.x, rpy.y, rpy.z);
         Some(settled(&IsometryMatrix3::from_parts(Translation3::from(xyz), rotation)))
     }
 
     /// An axis of length 1; `None` if it has no direction.
-    pub(super) fn direction(&mut self, node: Node<'_, '_>, xyz: &Vector3<f64>) -> Option<Vector3<f64>> {
+    pub(super) fn direction(&mut self, node: Node<'_>, xyz: &Vector3<f64>) -> Option<Vector3<f64>> {
         const MEANT: f64 = 1e-6;
+        if self.as_written {
+            return xyz.try_normalize(0.0);
+        }
         let largest = xyz.amax();
         let left_out =
             xyz.iter().filter(|x| x.abs() < MEANT * largest).fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -130,7 +131,7 @@ impl Findings<'_> {
         xyz.map(|x| if x.abs() < MEANT * largest { 0.0 } else { x }).try_normalize(0.0)
     }
 
-    fn parsed(&mut self, node: Node<'_, '_>, name: &str, text: &str) -> Option<f64> {
+    fn parsed(&mut self, node: Node<'_>, name: &str, text: &str) -> Option<f64> {
         match text.trim().parse::<f64>() {
             Ok(value) if value.is_finite() => Some(value),
             _ => {
@@ -153,18 +154,13 @@ pub(super) fn settled(pose: &IsometryMatrix3<f64>) -> IsometryMatrix3<f64> {
     IsometryMatrix3::from_parts(pose.translation, Rotation3::from_matrix_unchecked(rotation))
 }
 
-/// The first child element of a name.
-pub(super) fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
-    node.children().find(|child| child.has_tag_name(name))
-}
-
 /// The element as messages show it, with the named element that it is in.
-fn title(node: Node<'_, '_>) -> String {
-    let tag = node.tag_name().name();
+fn title(node: Node<'_>) -> String {
+    let tag = node.name();
     match node.attribute("name") {
         Some(name) => format!("<{tag} name=\"{name}\">"),
         None => match node.ancestors().skip(1).find_map(|a| Some((a, a.attribute("name")?))) {
-            Some((owner, name)) => format!("<{tag}> of {} `{name}`", owner.tag_name().name()),
+            Some((owner, name)) => format!("<{tag}> of {} `{name}`", owner.name()),
             None => format!("<{tag}>"),
         },
     }

@@ -69,12 +69,16 @@ impl Inertial {
     ///
     /// # Errors
     /// What is wrong, and a cure, where that would be another body.
-    pub(super) fn elements(&self) -> Result<(Elements, Option<String>), String> {
+    pub(super) fn elements(&self, as_written: bool) -> Result<(Elements, Option<String>), String> {
         let eigen = self.tensor.symmetric_eigen();
         let moments = eigen.eigenvalues;
         let written = written(&self.tensor);
         if is_inertia(written) && moments.min() >= self.mass * NOTHING {
             return Ok((written, None));
+        }
+        if as_written && moments.min() > ROUNDING * moments.max() {
+            let words = format!("has principal moments of {}, as written", shown(&moments));
+            return Ok((written, Some(words)));
         }
         // Second moments of mass along the principal axes; a body has none below zero.
         let squares = moments.map(|moment| moments.sum() / 2.0 - moment);
@@ -83,7 +87,8 @@ impl Inertial {
         if -squares.min() > MOST * largest.max(self.mass * NOTHING) {
             return Err(format!(
                 "its principal moments {shown} kg.m2 are no body's, as none may exceed the sum of the others; write those \
-                 about the mass centre, in the axes of the <inertial>"
+                 about the mass centre, in the axes of the <inertial>, or take them as they are by --as-written (positive \
+                 ones), or those of the link's shapes by --density"
             ));
         }
         let least = if is_thin { self.mass * THIN } else { squares.max() * ROUNDING };
@@ -133,7 +138,7 @@ pub(super) fn rounded(value: f64) -> f64 {
 }
 
 /// Whether the decimals as they are written are an inertia, exactly.
-fn is_inertia(elements: Elements) -> bool {
+pub(super) fn is_inertia(elements: Elements) -> bool {
     let exact: Option<Vec<Rational>> = elements.iter().map(|x| parse_decimal(&format!("{x:?}"))).collect();
     exact
         .and_then(|exact| exact.try_into().ok())
@@ -171,7 +176,7 @@ mod tests {
             ([0.0, 0.0, 0.0], [4e-6, 4e-6, 4e-6], "a millimetre thick, a change of 4e-6 kg.m2"),
             ([1e-20, 3e-20, -2e-20], [4e-6, 4e-6, 4e-6], "a millimetre thick"),
         ] {
-            let (elements, said) = turned(given, 2.0).elements().expect("a body");
+            let (elements, said) = turned(given, 2.0).elements(false).expect("a body");
             assert!(is_inertia(elements), "{given:?}");
             for (found, expected) in moments(elements).into_iter().zip(expected) {
                 assert!((found - expected).abs() < 5e-6, "{given:?}: {found} for {expected}");
@@ -180,7 +185,7 @@ mod tests {
             assert!(said.contains(remark) && said.is_empty() == remark.is_empty(), "{given:?}: {said}");
         }
         for given in [[1.0, 1.0, 3.0], [-0.5, 2.0, 2.0]] {
-            let words = turned(given, 2.0).elements().expect_err("no body");
+            let words = turned(given, 2.0).elements(false).expect_err("no body");
             assert!(words.contains("are no body's"), "{words}");
         }
     }
@@ -194,6 +199,6 @@ mod tests {
             centre: Vector3::zeros(),
             tensor: Matrix3::from_diagonal(&Vector3::new(0.7, 0.1, 0.8)),
         };
-        assert_eq!(aligned.elements().expect("a lamina"), ([0.7, 0.1, 0.8, 0.0, 0.0, 0.0], None));
+        assert_eq!(aligned.elements(false).expect("a lamina"), ([0.7, 0.1, 0.8, 0.0, 0.0, 0.0], None));
     }
 }

@@ -1,8 +1,9 @@
 //! Links become bodies: all links that are fixed to one another are one, and what is fixed to a root that does not
 //! float is ground.
 
+use super::Wishes;
 use super::element::settled;
-use super::inertia::{Elements, Inertial, rounded};
+use super::inertia::{Elements, Inertial, is_inertia, rounded};
 use super::robot::{Kind, Link, Robot};
 use crate::words;
 use nalgebra::{IsometryMatrix3, Translation3, Vector3};
@@ -46,6 +47,8 @@ pub(super) struct Settled {
     pub(super) mass: f64,
     /// About the mass centre, in the body's frame.
     pub(super) inertia: Elements,
+    /// Whether no body has such an inertia, and the file's is to be taken for all that.
+    pub(super) as_written: bool,
 }
 
 /// Where a link's frame is.
@@ -70,6 +73,18 @@ struct Group {
     inertial: Option<Inertial>,
 }
 
+impl Group {
+    /// Has the frame of the first of its links whose frame is wanted.
+    fn turn(&mut self, robot: &Robot, wanted: &[String]) {
+        let is_wanted = |link: usize| wanted.contains(&robot.links[link].name);
+        let Some(&(_, pose)) = self.links.iter().find(|(link, _)| is_wanted(*link)) else { return };
+        let back = settled(&pose.inverse());
+        self.zero = settled(&(self.zero * pose));
+        self.links.iter_mut().for_each(|(_, place)| *place = settled(&(back * *place)));
+        self.inertial = self.inertial.as_ref().map(|inertial| inertial.seen(&back));
+    }
+}
+
 /// A link that moves without mass takes this part of the mass and the inertia of what it carries.
 const BORROWED: f64 = 1e-6;
 
@@ -77,7 +92,11 @@ const BORROWED: f64 = 1e-6;
 ///
 /// # Errors
 /// Links that do not make a tree, links that move without mass, and inertias that no body has.
-pub(super) fn merge(file: &str, robot: &Robot, root: Root) -> Result<Merged, Vec<String>> {
+pub(super) fn merge(
+    file: &str,
+    robot: &Robot,
+    Wishes { root, as_written, frames, .. }: Wishes<'_>,
+) -> Result<Merged, Vec<String>> {
     let mut groups = grouped(robot, &order(file, robot)?, root);
     let mut problems = Vec::new();
     let mut remarks: Vec<String> = groups.iter().filter_map(|group| remark_on_links(robot, group)).collect();
@@ -87,6 +106,7 @@ pub(super) fn merge(file: &str, robot: &Robot, root: Root) -> Result<Merged, Vec
             .push(format!("{file}: all links are fixed to the root link `{name}`: --floating lets it move"));
     }
     let ground = usize::from(root == Root::Fixed);
+    groups[ground..].iter_mut().for_each(|group| group.turn(robot, frames));
     lend(file, robot, &mut groups[ground..], &mut remarks, &mut problems);
     let mut merged = Merged { bodies: Vec::new(), places: Vec::new(), remarks };
     let mut places = vec![None; robot.links.len()];
@@ -97,15 +117,15 @@ pub(super) fn merge(file: &str, robot: &Robot, root: Root) -> Result<Merged, Vec
         let inertial = group.inertial.as_ref().filter(|_| body >= ground);
         let centre = inertial.map_or_else(Vector3::zeros, |inertial| inertial.centre.map(on_grid));
         let centre = Translation3::from(centre);
-        let settled = inertial.map(|inertial| match inertial.elements() {
+        let settled = inertial.map(|inertial| match inertial.elements(as_written) {
             Ok((inertia, remark)) => {
                 let name = &robot.links[link].name;
                 merged.remarks.extend(remark.map(|remark| format!("the body of link `{name}` {remark}")));
-                Settled { mass: rounded(inertial.mass), inertia }
+                Settled { mass: rounded(inertial.mass), inertia, as_written: !is_inertia(inertia) }
             }
             Err(flaw) => {
                 problems.push(at(file, &robot.links[link], &format!("with what is fixed to it, {flaw}")));
-                Settled { mass: inertial.mass, inertia: [0.0; 6] }
+                Settled { mass: inertial.mass, inertia: [0.0; 6], as_written }
             }
         });
         for (link, pose) in &group.links {
@@ -233,15 +253,16 @@ fn lend(
             // What it carries does not hold it.
             let cure = if carrier.is_none() { ", or import the robot without --floating" } else { "" };
             let words = format!(
-                "moves and has no mass, nor has anything that is fixed to it: give it an <inertial>{cure}"
+                "moves and has no mass, nor has anything that is fixed to it: give it an <inertial>, or its shapes a \
+                 --density{cure}"
             );
             problems.push(at(file, link, &words));
             continue;
         };
         let Some(lender) = carried_mass(robot, groups, index) else {
             let words = format!(
-                "moves and has no mass, nor has anything that it carries: give it an <inertial>, or make joint `{}` (line \
-                 {}) a fixed one",
+                "moves and has no mass, nor has anything that it carries: give it an <inertial>, or its shapes a \
+                 --density, or make joint `{}` (line {}) a fixed one",
                 carrier.name, carrier.line
             );
             problems.push(at(file, link, &words));

@@ -14,15 +14,20 @@ const LONGEST: usize = 80;
 impl Names {
     /// The name in the model file of something with this name in the file.
     pub(super) fn name(&mut self, written: &str) -> String {
-        let plain = snake_case(written);
-        let mut name = plain.clone();
+        let name = self.made(&snake_case(written));
+        if name != written {
+            self.changed.push((written.to_owned(), name.clone()));
+        }
+        name
+    }
+
+    /// The name of something that is made besides; with a number if it is taken.
+    pub(super) fn made(&mut self, plain: &str) -> String {
+        let mut name = plain.to_owned();
         let mut number = 2;
         while self.taken.contains(&name) {
             name = format!("{plain}_{number}");
             number += 1;
-        }
-        if name != written {
-            self.changed.push((written.to_owned(), name.clone()));
         }
         self.taken.push(name.clone());
         name

@@ -6,7 +6,7 @@ use super::merge::{Body, Merged, Place, Root, Settled, on_grid};
 use super::names::{Names, snake_case};
 use super::robot::{Joint, Kind, Limit, Link, Robot};
 use super::wrenches::Wrench;
-use super::{MARK, Wishes, wrenches};
+use super::{Wishes, frames, wrenches};
 use crate::words;
 use nalgebra::{IsometryMatrix3, Point3, UnitQuaternion, Vector3};
 use std::fmt::Write as _;
@@ -52,6 +52,7 @@ pub(super) fn write(
         joint.mimic.as_ref().map_or_else(String::new, |_| joint_names.name(&format!("{name}_mimic")))
     };
     let mimics = robot.joints.iter().zip(&joints).map(&mut coupled).collect();
+    let framed = frames::of(robot, merged, wishes.frames, &mut joint_names, remarks);
     let changed = body_names.changed.iter().chain(&joint_names.changed);
     let changed: Vec<String> = changed.map(|(was, is)| format!("`{was}` is `{is}`")).collect();
     if !changed.is_empty() {
@@ -64,6 +65,9 @@ pub(super) fn write(
     (0..merged.bodies.len()).for_each(|body| page.body(&mut text, body));
     for write in [Page::joint, Page::coupler, Page::friction, Page::motor, Page::stops] {
         page.moving_joints().for_each(|joint| write(&page, &mut text, joint));
+    }
+    for frame in framed {
+        frame.outputs(&mut text, &page.bodies[frame.body], &vector(&frame.point));
     }
     for wrench in &page.wrenches {
         wrench.load(&mut text, &page.bodies[wrench.body], &vector(&wrench.point));
@@ -160,9 +164,10 @@ impl Page<'_> {
 
     fn head(&self, file: &str, remarks: &[String]) -> String {
         let mut text = format!(
-            "{MARK} from {file}. A body is all links that are fixed to one another; its frame is at their\n\
+            "# Written by {} from {file}. A body is all links that are fixed to one another; its frame is at their\n\
              # mass centre, with the axes of the link on the body's joint. Links' frames: place and Euler parameters.\n\
-             # What differs from the robot:\n"
+             # What differs from the robot:\n",
+            self.wishes.tool
         );
         for remark in remarks {
             let _ = writeln!(text, "# - {remark}");
@@ -208,6 +213,9 @@ impl Page<'_> {
                 );
                 let _ = writeln!(text, "position = {}", vector(&pose.translation.vector));
                 let _ = writeln!(text, "orientation = {}", euler_parameters(&pose));
+                if let Some(color) = &shape.color {
+                    let _ = writeln!(text, "color = \"{color}\"");
+                }
             }
         }
     }
@@ -220,6 +228,9 @@ impl Page<'_> {
             let _ = writeln!(text, "orientation = {}", euler_parameters(&body.zero));
         }
         let [xx, yy, zz, xy, xz, yz] = inertial.inertia;
+        if inertial.as_written {
+            text.push_str("as_written = true\n");
+        }
         let _ = writeln!(text, "mass = {:?}", inertial.mass);
         let _ = if [xy, xz, yz] == [0.0; 3] {
             writeln!(text, "inertia = [{xx:?}, {yy:?}, {zz:?}]")

@@ -1,12 +1,12 @@
 //! The robot as its file describes it: a tree of links and joints.
 
-use super::angle::Angles;
-use super::element::{Findings, XACRO, child};
+use super::angle::{Angles, at};
+use super::document::{Document, Node};
+use super::element::{Findings, XACRO};
 use super::inertia::Inertial;
-use super::shapes;
+use super::{Wishes, left_out, shapes};
 use crate::words;
 use nalgebra::{IsometryMatrix3, Matrix3, Vector3};
-use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A robot whose joints make a tree.
@@ -29,6 +29,8 @@ pub(super) struct Link {
     pub(super) inertial: Option<Inertial>,
     /// What it looks like, as far as that is known.
     pub(super) shapes: Vec<shapes::Shape>,
+    /// What it is made of, should it be weighed: the shapes that it collides with, or else those that are seen.
+    pub(super) solids: Vec<shapes::Shape>,
 }
 
 #[derive(Debug)]
@@ -89,25 +91,38 @@ impl Kind {
 ///
 /// # Errors
 /// Every mistake of the file, each with its line and element.
-pub(super) fn read(file: &str, text: &str) -> Result<Robot, Vec<String>> {
-    let document = Document::parse(text).map_err(|e| {
+pub(super) fn read(file: &str, text: &str, wishes: Wishes<'_>) -> Result<Robot, Vec<String>> {
+    let document = Document::parse(text).map_err(|(line, words)| {
         let cure = if text.contains("xacro:") { format!("; {XACRO}") } else { String::new() };
-        vec![format!("{file}: not a whole XML file: {e}{cure}")]
+        vec![format!("{file}:{line}: not a whole XML file: {words}{cure}")]
     })?;
-    let root = document.root_element();
+    let mut remarks = Vec::new();
+    for name in wishes.ignored {
+        let lines: Vec<u32> = document.all().filter(|node| node.is(name)).map(Node::line).collect();
+        let number = words::count(lines.len() as u64, &format!("<{name}>"));
+        remarks.push(match lines.as_slice() {
+            [] => format!("--ignore {name}: the robot has no such element"),
+            _ => format!("{number} ignored, as is asked for: {}", at(lines.iter())),
+        });
+    }
+    let document = document.without(wishes.ignored);
+    let Some(root) = document.root() else {
+        return Err(vec![format!("{file}: a URDF file has one <robot>")]);
+    };
     let mut findings = Findings {
         file,
-        document: &document,
+        as_written: wishes.as_written,
+        colors: shapes::materials(&document),
         problems: Vec::new(),
-        remarks: Vec::new(),
+        remarks,
         angles: Angles::default(),
         unused: BTreeMap::new(),
     };
-    if !root.has_tag_name("robot") {
+    if !root.is("robot") {
         findings.problem(root, "a URDF file has one <robot>");
         return Err(findings.problems);
     }
-    let robot = robot(&mut findings, root);
+    let robot = robot(&mut findings, root, wishes);
     if findings.problems.is_empty() {
         Ok(Robot { remarks: findings.all_remarks(), ..robot })
     } else {
@@ -115,10 +130,10 @@ pub(super) fn read(file: &str, text: &str) -> Result<Robot, Vec<String>> {
     }
 }
 
-fn robot(findings: &mut Findings<'_>, root: Node<'_, '_>) -> Robot {
-    let elements = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
-    let links: Vec<Link> = elements("link").filter_map(|node| link(findings, node)).collect();
-    let nodes: Vec<Node<'_, '_>> = elements("joint").collect();
+fn robot(findings: &mut Findings<'_>, root: Node<'_>, wishes: Wishes<'_>) -> Robot {
+    let elements = |name: &'static str| root.children().filter(move |node| node.is(name));
+    let links: Vec<Link> = elements("link").filter_map(|node| link(findings, node, wishes)).collect();
+    let nodes: Vec<Node<'_>> = elements("joint").collect();
     let names: Vec<&str> = nodes.iter().map(|node| node.attribute("name").unwrap_or_default()).collect();
     refuse_repetition(findings, &elements("link").collect::<Vec<_>>());
     refuse_repetition(findings, &nodes);
@@ -126,32 +141,24 @@ fn robot(findings: &mut Findings<'_>, root: Node<'_, '_>) -> Robot {
     if findings.problems.is_empty() {
         refuse_bad_mimics(findings, &nodes, &joints);
     }
-    for node in root.children().filter(Node::is_element) {
-        if node.tag_name().namespace().is_some_and(|n| n.contains("xacro")) {
-            findings.problem(node, XACRO);
-        } else if !node.has_tag_name("link") && !node.has_tag_name("joint") {
-            findings.unused(node);
-        }
-    }
+    left_out::tell(findings, root, &["link", "joint"], &[]);
     remark_on_shapes(findings, root, &links);
     let name = root.attribute("name").unwrap_or("robot").to_owned();
     let transmissions = elements("transmission").flat_map(|node| node.descendants());
-    let transmitted = transmissions.filter(|node| node.has_tag_name("joint"));
+    let transmitted = transmissions.filter(|node| node.is("joint"));
     let transmitted = transmitted.filter_map(|node| node.attribute("name")).map(str::to_owned).collect();
     Robot { name, links, joints, transmitted, remarks: Vec::new() }
 }
 
 /// One remark on all shapes that are left out.
-fn remark_on_shapes(findings: &mut Findings<'_>, root: Node<'_, '_>, links: &[Link]) {
-    let number = |tag: &str| root.descendants().filter(|node| node.has_tag_name(tag)).count();
+fn remark_on_shapes(findings: &mut Findings<'_>, root: Node<'_>, links: &[Link]) {
+    let number = |tag: &str| root.descendants().filter(|node| node.is(tag)).count();
     let kept: usize = links.iter().map(|link| link.shapes.len()).sum();
     let (visuals, collisions) = (number("visual").saturating_sub(kept), number("collision"));
     if visuals + collisions > 0 {
         let mut remark =
             format!("{visuals} <visual> and {collisions} <collision>: these shapes have no counterpart");
-        let is_lost = |node: &Node<'_, '_>| {
-            node.has_tag_name("mesh") && node.ancestors().any(|outer| outer.has_tag_name("visual"))
-        };
+        let is_lost = |node: &Node<'_>| node.is("mesh") && node.ancestors().any(|outer| outer.is("visual"));
         let meshes =
             links.iter().flat_map(|link| &link.shapes).filter(|s| matches!(s.kind, shapes::Kind::Mesh(..)));
         if root.descendants().filter(is_lost).count() > meshes.count() {
@@ -161,7 +168,7 @@ fn remark_on_shapes(findings: &mut Findings<'_>, root: Node<'_, '_>, links: &[Li
     }
 }
 
-fn refuse_repetition(findings: &mut Findings<'_>, nodes: &[Node<'_, '_>]) {
+fn refuse_repetition(findings: &mut Findings<'_>, nodes: &[Node<'_>]) {
     for (k, node) in nodes.iter().enumerate() {
         let name = node.attribute("name");
         if name.is_some() && nodes[..k].iter().any(|earlier| earlier.attribute("name") == name) {
@@ -170,22 +177,21 @@ fn refuse_repetition(findings: &mut Findings<'_>, nodes: &[Node<'_, '_>]) {
     }
 }
 
-fn link(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Link> {
+fn link(findings: &mut Findings<'_>, node: Node<'_>, wishes: Wishes<'_>) -> Option<Link> {
     let name = findings.text(node, "name")?.to_owned();
-    for other in node.children().filter(Node::is_element) {
-        if !["inertial", "visual", "collision"].contains(&other.tag_name().name()) {
-            findings.unused(other);
-        }
-    }
-    let inertial = child(node, "inertial").and_then(|inertial| read_inertial(findings, inertial));
-    let shapes = shapes::read(findings, node);
-    Some(Link { name, line: findings.line(node), inertial, shapes })
+    left_out::tell(findings, node, &["inertial", "visual", "collision"], &["inertial"]);
+    let inertial = node.child("inertial").and_then(|inertial| read_inertial(findings, inertial));
+    let shapes = shapes::read(findings, node, "visual");
+    let collisions =
+        if wishes.density.is_some() { shapes::read(findings, node, "collision") } else { Vec::new() };
+    let solids = if collisions.is_empty() { shapes.clone() } else { collisions };
+    Some(Link { name, line: node.line(), inertial, shapes, solids })
 }
 
 /// Mass, mass centre and inertia; `None` where both are zero.
-fn read_inertial(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Inertial> {
+fn read_inertial(findings: &mut Findings<'_>, node: Node<'_>) -> Option<Inertial> {
     let origin = findings.origin(node);
-    let Some(mass_node) = child(node, "mass") else {
+    let Some(mass_node) = node.child("mass") else {
         findings.problem(node, "<mass value=\"...\"/> is missing");
         return None;
     };
@@ -194,11 +200,12 @@ fn read_inertial(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Iner
         findings.problem(mass_node, &format!("the mass {mass:?} is negative"));
         return None;
     }
-    let Some(tensor) = child(node, "inertia") else {
+    let Some(tensor) = node.child("inertia") else {
         if mass > 0.0 {
-            findings.problem(node, "<inertia ixx=\"...\" .../> is missing");
+            findings.remark(node, "a mass without <inertia> is taken for a point");
         }
-        return None;
+        let point = Inertial { mass, centre: Vector3::zeros(), tensor: Matrix3::zeros() };
+        return Some(point.seen(&origin?)).filter(|_| mass > 0.0);
     };
     let [xx, yy, zz] = ["ixx", "iyy", "izz"].map(|name| findings.number(tensor, name));
     let [xy, xz, yz] = ["ixy", "ixz", "iyz"].map(|name| findings.number_or(tensor, name, 0.0));
@@ -208,7 +215,7 @@ fn read_inertial(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Iner
     (!is_nothing).then_some(Inertial { mass, centre: Vector3::zeros(), tensor }.seen(&origin?))
 }
 
-fn joint(findings: &mut Findings<'_>, node: Node<'_, '_>, links: &[Link], names: &[&str]) -> Option<Joint> {
+fn joint(findings: &mut Findings<'_>, node: Node<'_>, links: &[Link], names: &[&str]) -> Option<Joint> {
     let name = findings.text(node, "name")?.to_owned();
     let kind = kind(findings, node);
     let parent = end(findings, node, "parent", links);
@@ -220,7 +227,7 @@ fn joint(findings: &mut Findings<'_>, node: Node<'_, '_>, links: &[Link], names:
         _ => axis(findings, node),
     };
     let (damping, friction) = dynamics(findings, node);
-    let mimic = match child(node, "mimic") {
+    let mimic = match node.child("mimic") {
         Some(mimic) if kind == Some(Kind::Fixed) => {
             findings.remark(mimic, "a fixed joint follows nothing");
             None
@@ -229,13 +236,14 @@ fn joint(findings: &mut Findings<'_>, node: Node<'_, '_>, links: &[Link], names:
         None => None,
     };
     let limit = limit(findings, node);
-    without_counterpart(findings, node);
+    let once = ["origin", "parent", "child", "axis", "dynamics", "mimic", "limit"];
+    left_out::tell(findings, node, &once, &once);
     if kind.is_some_and(|kind| !kind.is_single()) && (damping > 0.0 || friction > 0.0) {
         findings.remark(node, "damping and friction are for revolute and prismatic joints only");
     }
     Some(Joint {
         name,
-        line: findings.line(node),
+        line: node.line(),
         kind: kind?,
         parent: parent?,
         child: child_link?,
@@ -248,7 +256,7 @@ fn joint(findings: &mut Findings<'_>, node: Node<'_, '_>, links: &[Link], names:
     })
 }
 
-fn kind(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Kind> {
+fn kind(findings: &mut Findings<'_>, node: Node<'_>) -> Option<Kind> {
     let known = ["revolute", "continuous", "prismatic", "planar", "fixed", "floating"];
     match findings.text(node, "type")? {
         "revolute" | "continuous" => Some(Kind::Revolute),
@@ -264,8 +272,8 @@ fn kind(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Kind> {
 }
 
 /// Index of the link that a joint's parent or child is.
-fn end(findings: &mut Findings<'_>, node: Node<'_, '_>, tag: &str, links: &[Link]) -> Option<usize> {
-    let Some(end) = child(node, tag) else {
+fn end(findings: &mut Findings<'_>, node: Node<'_>, tag: &str, links: &[Link]) -> Option<usize> {
+    let Some(end) = node.child(tag) else {
         findings.problem(node, &format!("<{tag} link=\"...\"/> is missing"));
         return None;
     };
@@ -279,8 +287,8 @@ fn end(findings: &mut Findings<'_>, node: Node<'_, '_>, tag: &str, links: &[Link
 }
 
 /// The axis, of length 1; x if none is given.
-fn axis(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Vector3<f64>> {
-    let Some(axis) = child(node, "axis") else { return Some(Vector3::x()) };
+fn axis(findings: &mut Findings<'_>, node: Node<'_>) -> Option<Vector3<f64>> {
+    let Some(axis) = node.child("axis") else { return Some(Vector3::x()) };
     let xyz = findings.vector_or(axis, "xyz", [1.0, 0.0, 0.0])?;
     let unit = findings.direction(axis, &xyz);
     if unit.is_none() {
@@ -290,8 +298,8 @@ fn axis(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Vector3<f64>>
 }
 
 /// Damping and friction; both are at least zero.
-fn dynamics(findings: &mut Findings<'_>, node: Node<'_, '_>) -> (f64, f64) {
-    let Some(dynamics) = child(node, "dynamics") else { return (0.0, 0.0) };
+fn dynamics(findings: &mut Findings<'_>, node: Node<'_>) -> (f64, f64) {
+    let Some(dynamics) = node.child("dynamics") else { return (0.0, 0.0) };
     let [damping, friction] = ["damping", "friction"].map(|name| {
         let value = findings.number_or(dynamics, name, 0.0).unwrap_or(0.0);
         if value < 0.0 {
@@ -303,19 +311,25 @@ fn dynamics(findings: &mut Findings<'_>, node: Node<'_, '_>) -> (f64, f64) {
 }
 
 /// Where a revolute or prismatic joint ends; a continuous one does not.
-fn limit(findings: &mut Findings<'_>, node: Node<'_, '_>) -> Option<Limit> {
+fn limit(findings: &mut Findings<'_>, node: Node<'_>) -> Option<Limit> {
     let limit =
-        child(node, "limit").filter(|_| matches!(node.attribute("type"), Some("revolute" | "prismatic")))?;
+        node.child("limit").filter(|_| matches!(node.attribute("type"), Some("revolute" | "prismatic")))?;
     let [lower, upper, effort] =
         ["lower", "upper", "effort"].map(|name| findings.number_or(limit, name, 0.0));
     Some(Limit { lower: lower?, upper: upper?, effort: effort?.max(0.0) })
 }
 
-fn read_mimic(findings: &mut Findings<'_>, node: Node<'_, '_>, names: &[&str]) -> Option<Mimic> {
+fn read_mimic(findings: &mut Findings<'_>, node: Node<'_>, names: &[&str]) -> Option<Mimic> {
     let name = findings.text(node, "joint")?;
     let joint = names.iter().position(|other| *other == name);
     if joint.is_none() {
-        findings.problem(node, &format!("unknown joint `{name}`: {}", words::instead(name, names)));
+        findings.problem(
+            node,
+            &format!(
+                "unknown joint `{name}`: {}, or let the joint move by itself: --ignore mimic",
+                words::instead(name, names)
+            ),
+        );
     }
     let multiplier = findings.number_or(node, "multiplier", 1.0);
     let offset = findings.number_or(node, "offset", 0.0);
@@ -323,7 +337,7 @@ fn read_mimic(findings: &mut Findings<'_>, node: Node<'_, '_>, names: &[&str]) -
 }
 
 /// Both joints of a mimic have one coordinate, and no joint follows itself.
-fn refuse_bad_mimics(findings: &mut Findings<'_>, nodes: &[Node<'_, '_>], joints: &[Joint]) {
+fn refuse_bad_mimics(findings: &mut Findings<'_>, nodes: &[Node<'_>], joints: &[Joint]) {
     for (index, joint) in joints.iter().enumerate() {
         let Some(mimic) = &joint.mimic else { continue };
         if mimic.multiplier == 0.0 {
@@ -340,16 +354,6 @@ fn refuse_bad_mimics(findings: &mut Findings<'_>, nodes: &[Node<'_, '_>], joints
         let chain = std::iter::successors(Some(mimic.joint), |from| follows(*from));
         if chain.take(joints.len() + 1).any(|other| other == index) {
             findings.problem(nodes[index], "the joint follows itself");
-        }
-    }
-}
-
-/// What else a joint has.
-fn without_counterpart(findings: &mut Findings<'_>, node: Node<'_, '_>) {
-    let known = ["origin", "parent", "child", "axis", "dynamics", "mimic", "limit"];
-    for other in node.children().filter(Node::is_element) {
-        if !known.contains(&other.tag_name().name()) {
-            findings.unused(other);
         }
     }
 }

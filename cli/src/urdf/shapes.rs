@@ -1,8 +1,9 @@
 //! What links look like: boxes, cylinders, spheres and meshes of `<visual>`.
 
-use super::element::{Findings, child};
+use super::document::{Document, Node};
+use super::element::Findings;
 use nalgebra::IsometryMatrix3;
-use roxmltree::Node;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// A solid or a surface of a link.
@@ -11,6 +12,8 @@ pub(super) struct Shape {
     /// In the link's frame.
     pub(super) pose: IsometryMatrix3<f64>,
     pub(super) kind: Kind,
+    /// As model files write it.
+    pub(super) color: Option<String>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -25,23 +28,23 @@ pub(super) enum Kind {
     Mesh(PathBuf, [f64; 3]),
 }
 
-/// The shapes of a link; a `<visual>` of another kind, or with a mesh that is not found, is left out.
-pub(super) fn read(findings: &mut Findings<'_>, link: Node<'_, '_>) -> Vec<Shape> {
-    let visuals = link.children().filter(|node| node.has_tag_name("visual"));
-    visuals.filter_map(|visual| shape(findings, visual)).collect()
+/// The shapes of a link under such tags; one of another kind, or with a mesh that is not found, is left out.
+pub(super) fn read(findings: &mut Findings<'_>, link: Node<'_>, tag: &str) -> Vec<Shape> {
+    let tagged = link.children().filter(|node| node.is(tag));
+    tagged.filter_map(|node| shape(findings, node)).collect()
 }
 
-fn shape(findings: &mut Findings<'_>, visual: Node<'_, '_>) -> Option<Shape> {
-    let geometry = child(visual, "geometry")?;
-    let kind = if let Some(node) = child(geometry, "box") {
+fn shape(findings: &mut Findings<'_>, visual: Node<'_>) -> Option<Shape> {
+    let geometry = visual.child("geometry")?;
+    let kind = if let Some(node) = geometry.child("box") {
         Kind::Box(findings.vector_or(node, "size", [0.0; 3])?.into())
-    } else if let Some(node) = child(geometry, "cylinder") {
+    } else if let Some(node) = geometry.child("cylinder") {
         Kind::Cylinder([findings.number(node, "radius")?, findings.number(node, "length")?])
-    } else if let Some(node) = child(geometry, "mesh") {
+    } else if let Some(node) = geometry.child("mesh") {
         let file = found(findings.file.as_ref(), findings.text(node, "filename")?)?;
         Kind::Mesh(file, findings.vector_or(node, "scale", [1.0; 3])?.into())
     } else {
-        Kind::Sphere(findings.number(child(geometry, "sphere")?, "radius")?)
+        Kind::Sphere(findings.number(geometry.child("sphere")?, "radius")?)
     };
     // Some robots have empty shapes: nothing is lost with them.
     let is_seen = match &kind {
@@ -51,7 +54,27 @@ fn shape(findings: &mut Findings<'_>, visual: Node<'_, '_>) -> Option<Shape> {
         Kind::Mesh(_, scale) => scale.iter().all(|scale| *scale != 0.0),
     };
     let pose = findings.origin(visual)?;
-    is_seen.then_some(Shape { pose, kind })
+    let material = visual.child("material");
+    let named = |material: Node<'_>| findings.colors.get(material.attribute("name")?).cloned();
+    let color = material.and_then(|material| color(material).or_else(|| named(material)));
+    is_seen.then_some(Shape { pose, kind, color })
+}
+
+/// The colour of a material that has one.
+pub(super) fn color(material: Node<'_>) -> Option<String> {
+    let color = material.child("color").filter(|_| material.is("material"))?;
+    let parts: Vec<f64> =
+        color.attribute("rgba")?.split_whitespace().filter_map(|x| x.parse().ok()).collect();
+    let [red, green, blue, ..] = parts[..] else { return None };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 255")]
+    let [red, green, blue] = [red, green, blue].map(|part| (255.0 * part.clamp(0.0, 1.0)).round() as u8);
+    Some(format!("#{red:02x}{green:02x}{blue:02x}"))
+}
+
+/// The colours of all materials with names.
+pub(super) fn materials(document: &Document) -> BTreeMap<String, String> {
+    let named = |node: Node<'_>| Some((node.attribute("name")?.to_owned(), color(node)?));
+    document.all().filter_map(named).collect()
 }
 
 impl Kind {

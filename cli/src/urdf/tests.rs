@@ -2,8 +2,19 @@
 
 use super::*;
 
-const PLAIN: Wishes<'_> =
-    Wishes { root: Root::Fixed, motors: false, armature: None, limits: false, wrenches: &[], folder: None };
+const PLAIN: Wishes<'_> = Wishes {
+    root: Root::Fixed,
+    motors: false,
+    armature: None,
+    limits: false,
+    wrenches: &[],
+    frames: &[],
+    folder: None,
+    as_written: false,
+    density: None,
+    ignored: &[],
+    tool: "gyro import",
+};
 const FLOATING: Wishes<'_> = Wishes { root: Root::Floating, ..PLAIN };
 
 const LINKS: &str = r#"<robot name="r">
@@ -22,7 +33,7 @@ const JOINT: &str = r#"<joint name="j" type="revolute"><parent link="base"/><chi
 fn mistakes_are_told_by_line_and_element() {
     for (rest, message) in [
         ("", "r.urdf:3: link `arm` is a second root"),
-        ("<joint", "r.urdf: not a whole XML file"),
+        ("<joint", "r.urdf:4: not a whole XML file"),
         (r#"<joint type="fixed"/>"#, "r.urdf:4: <joint> of robot `r`: the attribute `name` is missing"),
         (
             r#"<joint name="j" type="hinge"><parent link="base"/><child link="arm"/></joint>"#,
@@ -80,8 +91,13 @@ fn mistakes_are_told_by_line_and_element() {
             "r.urdf:4: <mass> of link `b`: the mass -1.0 is negative",
         ),
         (
-            r#"<link name="b"><inertial><mass value="1"/></inertial></link>"#,
-            "r.urdf:4: <inertial> of link `b`: <inertia ixx=\"...\" .../> is missing",
+            r#"<link name="b"><inertial><mass value="1"/></inertial><inertial><mass value="2"/></inertial></link>"#,
+            "r.urdf:4: <inertial> of link `b`: there is an earlier one",
+        ),
+        (
+            r#"<loop_joint name="l" type="continuous"><link1 link="arm"/><link2 link="base"/></loop_joint>"#,
+            "r.urdf:4: <loop_joint name=\"l\">: a model file has nothing for this, and without it the robot may be another \
+             mechanism: if it is not, give --ignore loop_joint",
         ),
     ] {
         let found = convert("r.urdf", "r.urdf", &robot(rest), PLAIN).unwrap_err();
@@ -168,7 +184,12 @@ fn a_moving_link_without_mass_is_refused_and_all_mistakes_come_at_once() {
     let lines: Vec<&str> = found.lines().collect();
     assert_eq!(lines.len(), 2, "{found}");
     assert!(lines[0].starts_with("r.urdf:4: link `a` moves and has no mass"), "{found}");
-    assert!(lines[0].ends_with("give it an <inertial>, or make joint `ja` (line 5) a fixed one"), "{found}");
+    assert!(
+        lines[0].ends_with(
+            "give it an <inertial>, or its shapes a --density, or make joint `ja` (line 5) a fixed one"
+        ),
+        "{found}"
+    );
 }
 
 /// What a joint without mass carries has mass: of that a millionth is taken, and nothing is added.
@@ -190,8 +211,7 @@ fn a_floating_link_without_mass_is_refused() {
     let rest = r#"<link name="trunk"/><joint name="j" type="floating"><parent link="base"/><child link="trunk"/></joint>
 <joint name="k" type="revolute"><parent link="trunk"/><child link="arm"/></joint>"#;
     let found = convert("r.urdf", "r.urdf", &robot(rest), PLAIN).unwrap_err();
-    let words =
-        "link `trunk` moves and has no mass, nor has anything that is fixed to it: give it an <inertial>";
+    let words = "link `trunk` moves and has no mass, nor has anything that is fixed to it: give it an <inertial>, or its shapes a --density";
     assert_eq!(found, format!("r.urdf:4: {words}"));
 }
 
@@ -351,4 +371,137 @@ fn a_root_without_mass_cannot_float_and_a_fixed_one_is_not_called_free() {
     let (page, remarks) = convert("r.urdf", "r.urdf", &robot(JOINT), PLAIN).unwrap();
     let said = format!("{page}{}", remarks.join("\n"));
     assert!(said.contains("--floating lets it move") && !said.contains("free = true"), "{said}");
+}
+
+/// What other readers of XML take: prefixes that nothing declares, a declaration after a comment, `--` in comments, an
+/// entity that is none, `<` in values.
+#[test]
+fn xml_is_read_forgivingly() {
+    let text = format!(
+        "<!-- first -- and more -->\n<?xml version=\"1.0\"?>\n{}",
+        robot(&format!(
+            r#"{JOINT}<link name="a&b <c>"><collision><drake:proximity_properties/></collision><drake:note/></link>
+<joint name="k" type="fixed"><parent link="arm"/><child link="a&b <c>"/></joint>"#
+        ))
+    );
+    let (page, remarks) = convert("r.urdf", "r.urdf", &text, PLAIN).unwrap();
+    assert!(page.contains("# Link a&b <c>: its frame"), "{page}");
+    assert!(remarks.contains(&"1 <drake:note> without counterpart: line 6".to_owned()), "{remarks:#?}");
+    for (text, words) in [
+        ("", "r.urdf: a URDF file has one <robot>"),
+        ("<robot>\n<link>\n", "r.urdf:2: not a whole XML file: <link> is not closed"),
+        ("<robot>\n<link></joint></robot>", "r.urdf:2: not a whole XML file"),
+    ] {
+        let found = convert("r.urdf", "r.urdf", text, PLAIN).unwrap_err();
+        assert!(found.contains(words), "{text}\n{found}");
+    }
+    // Nothing recurs into elements.
+    let deep = "<a>".repeat(200_000) + &"</a>".repeat(200_000);
+    let found = convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{deep}")), PLAIN).unwrap();
+    assert!(found.1.contains(&"1 <a> without counterpart: line 4".to_owned()), "{:#?}", found.1);
+}
+
+#[test]
+fn what_is_ignored_is_told_and_what_may_be_another_mechanism_is_refused_inside_of_others() {
+    for rest in [
+        "<mujoco><equality/></mujoco>",
+        r#"<gazebo><joint name="l" type="revolute"/></gazebo>"#,
+        r#"<drake:linear_spring_damper name="s"/>"#,
+        r#"<link name="frame"/><joint name="f" type="fixed"><parent link="arm"/><child link="frame"/><joint_properties damping="1"/></joint>"#,
+    ] {
+        let name = ["mujoco", "gazebo", "drake:linear_spring_damper", "joint_properties"]
+            .into_iter()
+            .find(|name| rest.contains(&format!("<{name}")))
+            .unwrap();
+        let text = robot(&format!("{JOINT}{rest}"));
+        let found = convert("r.urdf", "r.urdf", &text, PLAIN).unwrap_err();
+        assert!(found.ends_with(&format!("give --ignore {name}")), "{rest}\n{found}");
+        let ignored = [name.to_owned(), "other".to_owned()];
+        let (_, remarks) = convert("r.urdf", "r.urdf", &text, Wishes { ignored: &ignored, ..PLAIN }).unwrap();
+        for words in [
+            format!("1 <{name}> ignored, as is asked for: line 4"),
+            "--ignore other: the robot has no such element".to_owned(),
+        ] {
+            assert!(remarks.contains(&words), "{words} is missing in {remarks:#?}");
+        }
+    }
+    let harmless = r#"<ros2_control name="c"><joint name="j"/></ros2_control><gazebo reference="j"><implicitSpringDamper/></gazebo>"#;
+    assert!(convert("r.urdf", "r.urdf", &robot(&format!("{JOINT}{harmless}")), PLAIN).is_ok());
+}
+
+/// A mass without inertia is a point; inertias that no body has, and numbers near round ones, are kept on request.
+#[test]
+fn numbers_are_taken_as_they_are_written_on_request() {
+    let rest = link("b", (1.0, [1.0, 1.0, 3.0]), "revolute", "arm")
+        .replace("<axis xyz=\"0 0 0\"/>", "<axis xyz=\"1e-9 0 1\"/>")
+        .replace("xyz=\"0 0 2\"", "xyz=\"0 0 2\" rpy=\"1.5708 0 0\"")
+        + r#"<link name="point"><inertial><origin xyz="0 0 1"/><mass value="1"/></inertial></link>
+<joint name="p" type="revolute"><parent link="b"/><child link="point"/></joint>"#;
+    let text = robot(&format!("{JOINT}{rest}"));
+    let refused = convert("r.urdf", "r.urdf", &text, PLAIN).unwrap_err();
+    assert!(refused.contains("--as-written") && refused.contains("--density"), "{refused}");
+    let (page, remarks) = convert("r.urdf", "r.urdf", &text, Wishes { as_written: true, ..PLAIN }).unwrap();
+    assert!(page.contains("as_written = true\nmass = 1.0\ninertia = [1.0, 1.0, 3.0]\n"), "{page}");
+    assert!(page.contains("axis = [1e-9, "), "{page}");
+    assert!(!page.contains("axis = [0.0, -1.0, 0.0]"), "{page}");
+    for words in
+        ["<inertial> of link `point`: a mass without <inertia> is taken for a point", "a millimetre thick"]
+    {
+        assert!(remarks.iter().any(|remark| remark.contains(words)), "{words} is missing in {remarks:#?}");
+    }
+    gyro_model::read("r.toml", &page).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let broken = page.replace("as_written = true\n", "");
+    let said = gyro_model::read("r.toml", &broken).unwrap_err().to_string();
+    assert!(said.contains("breaks the triangle inequality") && said.contains("as_written = true"), "{said}");
+}
+
+/// Solids of 1000 kg/m3: a box of 0.1 × 0.2 × 0.3 m without inertial; a sphere whose inertia no body has keeps its mass.
+#[test]
+fn shapes_are_weighed_on_request() {
+    let rest = link("b", (2.0, [1.0, 1.0, 3.0]), "revolute", "arm").replace("0 0 0\"", "0 0 1\"").replace(
+        "</inertial>",
+        r#"</inertial><collision><origin xyz="0 0 5"/><geometry><sphere radius="0.5"/></geometry></collision>"#,
+    ) + r#"<link name="box"><visual><origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/><geometry><box size="0.1 0.2 0.3"/></geometry></visual></link>
+<joint name="p" type="prismatic"><parent link="b"/><child link="box"/></joint>"#;
+    let text = robot(&format!("{JOINT}{rest}"));
+    let (page, remarks) =
+        convert("r.urdf", "r.urdf", &text, Wishes { density: Some(1000.0), ..PLAIN }).unwrap();
+    // 2/5 m r² = 0.2; m (b² + c²) / 12 with the sides x and y exchanged by the turn.
+    assert!(page.contains("mass = 2.0\ninertia = [0.2, 0.2, 0.2]\n"), "{page}");
+    assert!(page.contains("mass = 6.0\ninertia = [0.05, 0.065, 0.025]\n"), "{page}");
+    for words in [
+        "mass and inertia are those of the shapes at 1000 kg/m3: `box`",
+        "inertias are those of the shapes, scaled to the masses of the file: `b`",
+    ] {
+        assert!(remarks.iter().any(|remark| remark == words), "{words} is missing in {remarks:#?}");
+    }
+}
+
+/// A tool that is turned on its arm gives the body its axes where its frame is asked for, and shapes keep their colours.
+#[test]
+fn frames_of_links_are_outputs_and_colours_are_kept() {
+    let rest = r#"<material name="red"><color rgba="1 0 0.2 1"/></material>
+<link name="tool"><visual><geometry><sphere radius="0.5"/></geometry><material name="red"/></visual></link>
+<joint name="f" type="fixed"><origin xyz="0.5 0 0" rpy="0 0 0.3"/><parent link="arm"/><child link="tool"/></joint>"#;
+    let text = robot(&format!("{JOINT}{rest}"));
+    let frames = |names: &[&str]| {
+        let frames: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
+        convert("r.urdf", "r.urdf", &text, Wishes { frames: &frames, ..PLAIN })
+    };
+    let (page, remarks) = frames(&["tool"]).unwrap();
+    assert!(page.contains("# Link tool: its frame is at [0.477668244562803, -0.14776010333067, 0.0] in the body's, turned by [1.0, 0.0, 0.0, 0.0]."), "{page}");
+    assert!(
+        page.contains("name = \"tool_pose\"\nkind = \"pose\"\nbody = \"arm\"\npoint = [0.477668244562803, "),
+        "{page}"
+    );
+    assert!(page.contains("color = \"#ff0033\"\n"), "{page}");
+    assert!(
+        remarks.iter().all(|remark| !remark.contains("--frames") && !remark.contains("<material>")),
+        "{remarks:#?}"
+    );
+    let (page, remarks) = frames(&["all"]).unwrap();
+    assert_eq!(page.matches("[[output]]").count(), 4, "{page}");
+    assert!(remarks.iter().any(|remark| remark.ends_with("axes): `tool`")), "{remarks:#?}");
+    let said = frames(&["base"]).err().unwrap();
+    assert!(said.contains("--frames base: this link is fixed"), "{said}");
 }

@@ -22,18 +22,18 @@ pub(super) fn check(
     file: &str,
     robot: &Robot,
     merged: &Merged,
-    wanted: &[String],
+    (option, wanted): (&str, &[String]),
 ) -> Result<(), Vec<String>> {
     let problem = |name: &String| match robot.links.iter().position(|link| link.name == *name) {
         None => {
             let names: Vec<_> = robot.links.iter().map(|link| format!("`{}`", link.name)).collect();
             Some(format!(
-                "{file}: --wrenches {name}: there is no such link; there are {}",
+                "{file}: {option} {name}: there is no such link; there are {}",
                 words::listed(&names)
             ))
         }
         Some(link) if merged.bodies[merged.places[link].body].inertial.is_none() => {
-            Some(format!("{file}: --wrenches {name}: this link is fixed, and no force moves it"))
+            Some(format!("{file}: {option} {name}: this link is fixed, and nothing moves it"))
         }
         Some(_) => None,
     };

@@ -24,6 +24,8 @@ struct Inertial {
 struct Link {
     name: String,
     inertial: Option<Inertial>,
+    /// What its shape weighs, should it be asked for.
+    solid: Option<Inertial>,
     text: String,
 }
 
@@ -37,6 +39,18 @@ struct Joint {
     mimic: Option<(usize, f64, f64)>,
     text: String,
 }
+
+/// How a robot is to be taken.
+#[derive(Clone, Copy, Default)]
+struct Taken {
+    /// By its numbers, whatever they are.
+    as_written: bool,
+    /// With masses of shapes.
+    weighed: bool,
+}
+
+/// Of shapes that are weighed, kg/m3.
+const DENSITY: f64 = 500.0;
 
 /// Links with the root first and each child behind its parent; joint k carries link k + 1.
 struct Robot {
@@ -70,7 +84,7 @@ fn decimal(rng: &mut ChaCha8Rng, most: f64) -> f64 {
 }
 
 /// An `<origin>` and its pose.
-fn origin(rng: &mut ChaCha8Rng) -> (String, Pose) {
+fn origin(rng: &mut ChaCha8Rng, taken: Taken) -> (String, Pose) {
     if rng.random_bool(0.2) {
         return (String::new(), Pose::shift([0.0; 3]));
     }
@@ -78,7 +92,7 @@ fn origin(rng: &mut ChaCha8Rng) -> (String, Pose) {
     let rpy: [(String, f64); 3] = std::array::from_fn(|_| {
         if rng.random_bool(0.6) {
             let (text, angle) = ANGLES[rng.random_range(0..ANGLES.len())];
-            (text.to_owned(), angle)
+            (text.to_owned(), if taken.as_written { text.parse().unwrap() } else { angle })
         } else {
             // Three decimals, which are meant.
             let angle = (rng.random_range(-3.0..3.0) * 1e3_f64).round() / 1e3;
@@ -91,23 +105,39 @@ fn origin(rng: &mut ChaCha8Rng) -> (String, Pose) {
     (text, Pose::origin(xyz, rpy.map(|angle| angle.1)))
 }
 
-fn link(rng: &mut ChaCha8Rng, index: usize) -> Link {
+/// A box and what it weighs, from the integrals of its squares.
+fn solid(rng: &mut ChaCha8Rng, taken: Taken) -> (String, Inertial) {
+    let (pose, at) = origin(rng, taken);
+    let [x, y, z]: Vector = std::array::from_fn(|_| decimal(rng, 0.2).abs() + 0.02);
+    let mass = DENSITY * x * y * z;
+    let about = |a: f64, b: f64| mass / 12.0 * (a * a + b * b);
+    let inertia = [[about(y, z), 0.0, 0.0], [0.0, about(x, z), 0.0], [0.0, 0.0, about(x, y)]];
+    let text = format!("<collision>{pose}<geometry><box size=\"{x:?} {y:?} {z:?}\"/></geometry></collision>");
+    (text, Inertial { mass, at, inertia })
+}
+
+fn link(rng: &mut ChaCha8Rng, index: usize, taken: Taken) -> Link {
     let name = format!("{}{index}", NAMES.choose(rng).unwrap());
     let shown = escaped(&name);
     if rng.random_bool(0.3) {
         let frames = ["", "<inertial><mass value=\"0\"/></inertial>", "<visual/><collision name=\"c\"/>"];
-        let text = format!("<link name=\"{shown}\">{}</link>\n", frames.choose(rng).unwrap());
-        return Link { name, inertial: None, text };
+        let frame = frames.choose(rng).unwrap();
+        let (shape, solid) = solid(rng, taken);
+        let text =
+            format!("<link name=\"{shown}\">{frame}{}</link>\n", if taken.weighed { &shape } else { "" });
+        return Link { name, inertial: None, solid: taken.weighed.then_some(solid), text };
     }
-    let (pose, at) = origin(rng);
+    let (pose, at) = origin(rng, taken);
     let mass = decimal(rng, 2.0).abs() + 0.01;
     // Of three rods.
     let rods: [Vector; 3] = std::array::from_fn(|_| std::array::from_fn(|_| rng.random_range(-0.2..0.2)));
     let squares: f64 = rods.iter().map(|rod| dot(*rod, *rod)).sum();
+    // And, where any numbers will do, far more about one axis than a body can have.
+    let excess = if taken.as_written && rng.random_bool(0.5) { 8.0 } else { 0.0 };
     let inertia: [Vector; 3] = std::array::from_fn(|i| {
         std::array::from_fn(|j| {
             let products: f64 = rods.iter().map(|rod| rod[i] * rod[j]).sum();
-            mass * (if i == j { squares } else { 0.0 } - products)
+            mass * (if i == j { squares } else { 0.0 } - products + excess * rods[0][i] * rods[0][j])
         })
     });
     let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia;
@@ -115,10 +145,20 @@ fn link(rng: &mut ChaCha8Rng, index: usize) -> Link {
         "<link name=\"{shown}\"><inertial>{pose}<mass value=\"{mass:?}\"/><inertia ixx=\"{xx:?}\" ixy=\"{xy:?}\" \
          ixz=\"{xz:?}\" iyy=\"{yy:?}\" iyz=\"{yz:?}\" izz=\"{zz:?}\"/></inertial></link>\n"
     );
-    Link { name, inertial: Some(Inertial { mass, at, inertia }), text }
+    if !taken.weighed && rng.random_bool(0.1) {
+        let text =
+            format!("<link name=\"{shown}\"><inertial>{pose}<mass value=\"{mass:?}\"/></inertial></link>\n");
+        return Link {
+            name,
+            inertial: Some(Inertial { mass, at, inertia: [[0.0; 3]; 3] }),
+            solid: None,
+            text,
+        };
+    }
+    Link { name, inertial: Some(Inertial { mass, at, inertia }), solid: None, text }
 }
 
-fn joint(rng: &mut ChaCha8Rng, earlier: &[Joint], links: &[Link], child: usize) -> Joint {
+fn joint(rng: &mut ChaCha8Rng, earlier: &[Joint], links: &[Link], child: usize, taken: Taken) -> Joint {
     let kinds = ["fixed", "fixed", "fixed", "revolute", "revolute", "continuous", "prismatic", "planar"];
     // The model file tells free bodies apart by name alone: one is enough.
     let is_first = earlier.iter().all(|joint| joint.kind != "floating");
@@ -126,7 +166,7 @@ fn joint(rng: &mut ChaCha8Rng, earlier: &[Joint], links: &[Link], child: usize) 
         if is_first && rng.random_bool(0.05) { "floating" } else { kinds[rng.random_range(0..kinds.len())] };
     let parent = rng.random_range(0..child);
     let name = format!("{}{child}", NAMES.choose(rng).unwrap());
-    let (pose, origin) = origin(rng);
+    let (pose, origin) = origin(rng, taken);
     let axes: [Vector; 5] =
         [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.3, -0.5, 0.7]];
     let axis = *axes.choose(rng).unwrap();
@@ -152,21 +192,43 @@ fn joint(rng: &mut ChaCha8Rng, earlier: &[Joint], links: &[Link], child: usize) 
     Joint { name, kind, parent, child, origin, axis: scale(1.0 / norm, axis), mimic, text }
 }
 
-fn robot(rng: &mut ChaCha8Rng) -> Robot {
+fn robot(rng: &mut ChaCha8Rng, taken: Taken) -> Robot {
     let n_links = rng.random_range(2..10);
-    let links: Vec<Link> = (0..n_links).map(|index| link(rng, index)).collect();
+    let links: Vec<Link> = (0..n_links).map(|index| link(rng, index, taken)).collect();
     let mut joints: Vec<Joint> = Vec::new();
     for child in 1..n_links {
-        joints.push(joint(rng, &joints, &links, child));
+        joints.push(joint(rng, &joints, &links, child, taken));
     }
     let mut order: Vec<usize> = (0..joints.len()).collect();
     order.shuffle(rng);
     let mut parts: Vec<&str> = links.iter().map(|link| link.text.as_str()).collect();
     parts.extend(["<transmission name=\"t\"><type>x</type></transmission>\n", "<gazebo/>\n", "<!-- - -->\n"]);
+    let odd = [
+        "<!-- a -- b -->\n",
+        "<drake:note a=\"&b;\" a=\"<\"/>\n",
+        "<?other?>\n",
+        "<![CDATA[<joint>]]>\n",
+        "a & b\n",
+        "<?xml version=\"1.0\"?>\n",
+    ];
+    parts.extend(odd.choose_multiple(rng, 2));
     parts.shuffle(rng);
     let joints_text: String = order.iter().map(|index| joints[*index].text.as_str()).collect();
-    let text = format!("<robot name=\"match\">\n{}{joints_text}</robot>\n", parts.concat());
-    Robot { links, joints, text, order }
+    let heads = [
+        "",
+        "<?xml version=\"1.0\"?>\n",
+        "\n <!-- -- -->\n<?xml version=\"1.0\"?>\n",
+        "\u{feff}",
+        "<!DOCTYPE robot>\n",
+    ];
+    let head = heads.choose(rng).unwrap();
+    let text = format!("{head}<robot name=\"match\">\n{}{joints_text}</robot>\n", parts.concat());
+    let mut robot = Robot { links, joints, text, order };
+    let bare: Vec<usize> = (0..n_links).filter(|link| robot.lump(robot.first(*link).0).0 == 0.0).collect();
+    for link in bare {
+        robot.links[link].inertial = robot.links[link].solid;
+    }
+    robot
 }
 
 impl Robot {
@@ -338,7 +400,8 @@ fn of_model(model: &Model) -> [f64; 5] {
     sums
 }
 
-/// Rounding of some rotations and of the file's decimals; where a link borrows a millionth of a mass, some of these.
+/// Rounding of some rotations and of the file's decimals; where a link borrows a millionth of a mass, or a point is
+/// taken to be a millimetre thick, some of these.
 const AGREES: [f64; 2] = [1e-12, 1e-4];
 
 const ROBOTS: u64 = 150;
@@ -349,16 +412,22 @@ fn random_robots_keep_mass_and_energy() {
     let (mut imported, mut refused) = (0, 0);
     for seed in 0..ROBOTS {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let robot = robot(&mut rng);
+        let taken = Taken { as_written: seed % 3 == 1, weighed: seed % 3 == 2 };
+        let robot = robot(&mut rng, taken);
         let is_floating = rng.random_bool(0.5);
         let (file, out) = (folder.0.join(format!("{seed}.urdf")), folder.0.join(format!("{seed}.toml")));
         fs::write(&file, &robot.text).unwrap();
-        let options: &[&str] =
-            if is_floating { &["--floating", "--motors"] } else { &["--motors", "--limits"] };
-        let output =
-            xtask(&[&["import", file.to_str().unwrap(), "--out", out.to_str().unwrap()], options].concat());
+        let mut options: Vec<&str> =
+            if is_floating { vec!["--floating", "--motors"] } else { vec!["--motors", "--limits"] };
+        options.extend(taken.as_written.then_some("--as-written"));
+        options.extend(if taken.weighed { &["--density", "500"][..] } else { &[] });
+        let output = xtask(
+            &[&["import", file.to_str().unwrap(), "--out", out.to_str().unwrap()], &options[..]].concat(),
+        );
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         let (problem, borrows) = robot.expected(is_floating);
+        let is_point = |link: &Link| link.inertial.is_some_and(|inertial| inertial.inertia == [[0.0; 3]; 3]);
+        let is_rough = borrows || robot.links.iter().any(is_point);
         if let Some(problem) = problem {
             assert!(output.status.code() == Some(2) && said.contains(&problem), "{seed}: {problem}\n{said}");
             refused += 1;
@@ -371,7 +440,7 @@ fn random_robots_keep_mass_and_energy() {
         let motions = moved(&mut rng, &robot, &mut model, is_floating);
         let (found, expected) = (of_model(&model), of_robot(&robot, &motions, is_floating));
         for (found, expected) in found.iter().zip(expected) {
-            let most = AGREES[usize::from(borrows)] * (1.0 + expected.abs());
+            let most = AGREES[usize::from(is_rough)] * (1.0 + expected.abs());
             assert!(
                 (found - expected).abs() < most,
                 "{seed}: {found} for {expected}\n{}\n{page}",
@@ -387,10 +456,27 @@ fn random_robots_keep_mass_and_energy() {
 #[test]
 fn broken_robots_are_refused_in_words() {
     let folder = Folder::new("broken");
-    let pieces = ["", "<xacro:leg/>", "\"", "1e400", "nan", "${x}", "<link/>", "</robot>", "0", "-1"];
+    let pieces = [
+        "",
+        "<xacro:leg/>",
+        "\"",
+        "1e400",
+        "nan",
+        "${x}",
+        "<link/>",
+        "</robot>",
+        "0",
+        "-1",
+        "<loop_joint/>",
+        "<a:b",
+        "&",
+        "<!--",
+        "<?xml?>",
+        "<![CDATA[",
+    ];
     for seed in 0..ROBOTS {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let mut text: Vec<char> = robot(&mut rng).text.chars().collect();
+        let mut text: Vec<char> = robot(&mut rng, Taken::default()).text.chars().collect();
         let from = rng.random_range(0..text.len());
         let to = (from + rng.random_range(0..20)).min(text.len());
         let piece = pieces.choose(&mut rng).unwrap();

@@ -11,13 +11,14 @@ use super::{driven, shapes, tables};
 use crate::validate::Owner;
 use crate::{Body, Number, Support};
 
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 14] = [
     "name",
     "fixed",
     "free",
     "driven",
     "mass",
     "inertia",
+    "as_written",
     "point_mass",
     "position",
     "orientation",
@@ -62,12 +63,14 @@ fn body(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String
     let point_masses = point_masses::read(reader, &section, index, &title);
     let (mass, inertia) = inertial(reader, &section, &title, support);
     let shapes = section.get("shape").map(|item| shapes::read(reader, index, &title, item));
+    let as_written = section.get("as_written").and_then(|item| item.flag(reader)).unwrap_or(false);
     let weight = section.get("assembly_weight").and_then(|item| plain_number(reader, item));
     let body = Body {
         name,
         support,
         mass,
         inertia,
+        as_written,
         frame: [0; 3].map(Number::integer),
         position: section.vector_or(reader, "position", [0; 3]),
         orientation: section.vector_or(reader, "orientation", [1, 0, 0, 0]),

@@ -70,10 +70,11 @@ pub(super) fn inertia(model: &Model, index: usize, body: &Body) -> Option<Proble
                     rod needs a small one about its own axis";
         return Some(problem(message, "turning about some axis would cost no energy", help));
     }
-    if !tensor.of_mass().is_semidefinite() {
+    if !body.as_written && !tensor.of_mass().is_semidefinite() {
         let message = format!("the inertia of body `{}` breaks the triangle inequality", body.name);
         let help = "no principal moment of inertia may exceed the sum of the other two; check the unit (kg.m2) and \
-                    that products of inertia are entered as elements of the tensor, xy = -(integral of x y dm)";
+                    that products of inertia are entered as elements of the tensor, xy = -(integral of x y dm); to \
+                    compute with the numbers as they are, write as_written = true";
         return Some(problem(message, &tensor.triangle_label(), help));
     }
     None

@@ -68,6 +68,10 @@ def from_urdf(
     limits: bool = False,
     armature: float | None = None,
     wrenches: list[str] | None = None,
+    frames: list[str] | None = None,
+    as_written: bool = False,
+    density: float | None = None,
+    ignore: list[str] | None = None,
 ) -> Mechanism:
     """The mechanism of a robot in the Unified Robot Description Format.
 
@@ -77,19 +81,28 @@ def from_urdf(
     armature: inertia of each joint's drive behind its gear, kg m2 or kg.
     wrenches: links on which a force and a torque act, inputs `LINK_force_x` to `LINK_torque_z`.
 
-    What of the robot has no counterpart is warned of (RunWarning). The model file is `mechanism.source`.
+    frames: links whose frames are outputs, `LINK_pose` and `LINK_velocity`; `["all"]` for all that move.
+    as_written: inertias that no body has, and angles and axes close to round ones, are taken as they are.
+    density: of shapes (kg/m3), from which mass and inertia are taken where the file has none, or none of a body.
+    ignore: names of elements to be left out, though the robot may be another mechanism without them.
+
+    What of the robot has no counterpart is warned of, in one warning (RunWarning). The model file is `mechanism.source`.
     """
-    flags = {"floating": floating, "motors": motors, "limits": limits}
-    options = [f"--{name}" for name, wanted in flags.items() if wanted]
+    flags = {"floating": floating, "motors": motors, "limits": limits, "as_written": as_written}
+    options = [f"--{name.replace('_', '-')}" for name, wanted in flags.items() if wanted]
     if armature is not None:
         options += ["--armature", repr(float(armature))]
-    if wrenches:
-        options += ["--wrenches", ",".join(wrenches)]
+    if density is not None:
+        options += ["--density", repr(float(density))]
+    for name, words in (("wrenches", wrenches), ("frames", frames), ("ignore", ignore)):
+        if words:
+            options += [f"--{name}", ",".join(words)]
     if not Path(path).exists():
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(path))
     text, remarks = _native.convert_urdf(os.fspath(path), options)
-    for remark in remarks:
-        warnings.warn(_in_python(remark), RunWarning, stacklevel=2)
+    if remarks:
+        told = "\n  ".join(_in_python(remark) for remark in remarks)
+        warnings.warn(f"what differs from the robot:\n  {told}", RunWarning, stacklevel=2)
     return _loaded(text, str(Path(path).with_suffix(".toml")), Path(path).parent)
 
 

@@ -22,6 +22,14 @@ function unpack(channel, n, bytes, start) {
   return values;
 }
 
+// Where bodies are that no joint holds, and how they move: the numbers of the picture itself.
+function ofFreeBodies(mechanism, bodies) {
+  const parts = [['position', 'pose', 0, 'm', ['x', 'y', 'z']], ['orientation', 'pose', 3, '1', ['e0', 'e1', 'e2', 'e3']],
+    ['velocity', 'velocity', 0, 'm/s', ['x', 'y', 'z']], ['angular velocity, body frame', 'velocity', 3, 'rad/s', ['x', 'y', 'z']]];
+  return mechanism.bodies.flatMap(({ name, free }, b) => (free && bodies[b].moves ? parts : []).flatMap(([what, of, first, unit, names]) =>
+    names.map((own, k) => ({ group: 'Free bodies', title: `${name} ${what}`, name: own, unit, log: false, channel: {}, values: bodies[b][of][first + k] }))));
+}
+
 export function readScenes(head, bytes) {
   let start = 0;
   const next = (channel, n) => {
@@ -42,7 +50,7 @@ export function readScenes(head, bytes) {
       };
     });
     const columns = scene.columns.map((c) => ({ ...c, log: c.channel.log, values: next(c.channel, scene.n) }));
-    return { ...scene, time, bodies, columns };
+    return { ...scene, time, bodies, columns: [...columns, ...ofFreeBodies(scene.mechanism, bodies)], events: scene.events ?? [] };
   });
   const meshes = (head.meshes ?? []).map(({ n, vertices, triangles }) => ({
     vertices: vertices.map((c) => next(c, n[0])),

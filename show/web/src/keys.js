@@ -6,6 +6,7 @@ const KEYS = [
   ['← →', 'one sample back or on'],
   ['Shift ← →', 'a twentieth of the run back or on'],
   ['Home End', 'to the start or the end'],
+  ['E', 'to the next event'],
   ['+ −', 'faster or slower'],
   ['F', 'frames of bodies'],
   ['T', 'trails'],
@@ -13,12 +14,16 @@ const KEYS = [
   ['L', 'names'],
   ['G', 'ground'],
   ['A', 'forces: weight, springs, loads, reactions'],
+  ['C', 'the camera follows'],
+  ['D', 'angles in degrees'],
+  ['1 2 3 4', 'front, top, side, corner'],
   ['R', 'the first view again'],
+  ['P V', 'picture (PNG), video of the run'],
   ['Esc', 'nothing selected'],
   ['?', 'this list'],
 ];
 
-export function keys(clock, place) {
+export function keys(clock, place, events) {
   place.help.append(
     element('h2', {}, 'Keys'),
     element('dl', {}, ...KEYS.flatMap(([key, what]) => [element('dt', {}, key), element('dd', {}, what)])),
@@ -33,6 +38,7 @@ export function keys(clock, place) {
     ArrowRight: (event) => (event.shiftKey ? clock.seek(clock.t + far) : clock.step(1)),
     Home: () => clock.seek(0),
     End: () => clock.seek(clock.end),
+    e: () => clock.seek(events.find(([t]) => t > clock.t + 1e-9 * clock.end)?.[0] ?? clock.t),
     '+': () => clock.faster(1),
     '=': () => clock.faster(1),
     '-': () => clock.faster(-1),

@@ -57,7 +57,8 @@ export function layout(head, scenes) {
       keep('back', button(icon('back'), 'One sample back (←)')),
       keep('play', button(icon('play'), 'Play or pause (space)')),
       keep('forward', button(icon('forward'), 'One sample on (→)')),
-      keep('slider', element('input', { type: 'range', min: 0, max: 1, step: 'any', value: 0, 'aria-label': 'time' })),
+      element('div', { class: 'track' }, keep('slider', element('input', { type: 'range', min: 0, max: 1, step: 'any', value: 0, 'aria-label': 'time' })), keep('marks', element('div', { class: 'marks' }))),
+      keep('event', element('output', { class: 'event' })),
       keep('time', element('output', { class: 'time' })),
       keep('speed', element('select', { title: 'Speed (+ −)', 'aria-label': 'speed' }))),
     keep('help', element('dialog', { class: 'help' })));

@@ -18,7 +18,9 @@ export class Live {
     Object.assign(this, { mechanism, given, scene, listeners: [], failure: null, waiting: false });
     this.states = new Float64Array(scene.n * about.sizes.n_joints);
     this.bodies = about.bodies.map((name) => scene.mechanism.bodies.findIndex((body) => body.name === name));
-    this.sources = sources(scene.columns, about.states.map(({ name }) => name));
+    // Those of free bodies are the numbers of the picture.
+    this.columns = scene.columns.filter(({ group }) => group !== 'Free bodies');
+    this.sources = sources(this.columns, about.states.map(({ name }) => name));
     this.work = about.states.findIndex(({ name }) => name === 'work');
     this.reset();
     this.solver = mechanism.solver();
@@ -112,12 +114,12 @@ export class Live {
 
   /** From here on nothing is known: bodies stay where they are, curves end. */
   stop() {
-    const { bodies, columns, n } = this.scene;
+    const { bodies, n } = this.scene;
     const last = Math.max(0, this.next - 1);
     for (const { pose, velocity, moves } of bodies) {
       if (moves) for (const values of [...pose, ...velocity]) values.fill(values[last], this.next);
     }
-    for (const { values } of columns) values.fill(NaN, this.next);
+    for (const { values } of this.columns) values.fill(NaN, this.next);
     this.next = n;
   }
 
@@ -146,7 +148,7 @@ export class Live {
       energy: { kinetic, potential, work, '': kinetic + potential - work - this.balance },
       violation: [largest(m.phi(t, y)), largest(m.velocityResidual(t, y))],
     };
-    scene.columns.forEach(({ values }, c) => { values[k] = this.sources[c](facts); });
+    this.columns.forEach(({ values }, c) => { values[k] = this.sources[c](facts); });
     this.next = k + 1;
   }
 }

@@ -18,11 +18,12 @@ const place = layout(gyro.head, scenes);
 const clock = new Clock(scenes);
 const theme = watchTheme(place.themeButton);
 
-timeline(place, clock);
+const [{ events }] = scenes;
+timeline(place, clock, events);
 const charts = plots(place.plots, scenes, clock, theme);
 const marks = { plots: performance.now() - began };
 const numbers = panel(place, scenes, clock);
-keys(clock, place);
+keys(clock, place, events);
 
 // For tests and for `gallery.mjs`: what the page shows, and how long it took.
 const api = { clock, scenes, charts, numbers, marks, picture: null, live: null };
@@ -46,6 +47,9 @@ async function runLive() {
     if (kind === 'parameter' && drawnWith(scene.mechanism, gyro.head.live, live.mechanism.parameters)) api.picture?.remake();
   });
   live.listen(() => {
+    // They were those of the run that the page came with.
+    events.length = 0;
+    place.marks.replaceChildren();
     charts.renew();
     api.picture?.renew();
     clock.touch();

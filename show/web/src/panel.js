@@ -1,6 +1,7 @@
 // The numbers of the body that was clicked on.
 import { poseAt, valueAt } from './data.js';
 import { element } from './layout.js';
+import { onDegrees, shown } from './units.js';
 
 const number = (x) => (!Number.isFinite(x) ? '–' : x !== 0 && (Math.abs(x) < 1e-3 || Math.abs(x) >= 1e5) ? x.toExponential(3) : String(+x.toPrecision(4)));
 
@@ -19,14 +20,16 @@ function rows(scene, b, t) {
   const { angle, axis } = rotation(pose);
   const found = [];
   if (body.mass > 0) found.push(['mass', [number(body.mass)], 'kg']);
-  if (body.mass > 0 && body.support === 'moving') found.push(['inertia xx, yy, zz', body.inertia.slice(0, 3).map(number), 'kg m²']);
-  if (body.inertia.slice(3).some(Boolean)) found.push(['xy, xz, yz', body.inertia.slice(3).map(number), 'kg m²']);
+  if (body.mass > 0 && body.support === 'moving') found.push(['inertia xx, yy, zz', body.inertia.slice(0, 3).map(number), 'kg·m²']);
+  if (body.inertia.slice(3).some(Boolean)) found.push(['xy, xz, yz', body.inertia.slice(3).map(number), 'kg·m²']);
   found.push(['position', [0, 1, 2].map((k) => number(pose[k])), 'm']);
   found.push(['turned by', [number((angle * 180) / Math.PI)], '°'], ['about', axis.map(number), '']);
   if (bodies[b].velocity.length) {
     const velocity = bodies[b].velocity.map((values) => valueAt(scene.time, values, t));
     found.push(['velocity', velocity.slice(0, 3).map(number), 'm/s'], ['speed', [number(Math.hypot(...velocity.slice(0, 3)))], 'm/s']);
-    found.push(['angular velocity, body frame', velocity.slice(3).map(number), 'rad/s'], ['its size', [number(Math.hypot(...velocity.slice(3)))], 'rad/s']);
+    const { factor, unit } = shown('rad/s');
+    const spin = velocity.slice(3).map((x) => factor * x);
+    found.push(['angular velocity, body frame', spin.map(number), unit], ['its size', [number(Math.hypot(...spin))], unit]);
   }
   return found;
 }
@@ -55,6 +58,7 @@ export function panel(place, scenes, clock) {
     for (const listener of listeners) listener(b);
     show();
   };
+  onDegrees(show);
   clock.listen(() => { if (selected !== null) show(); });
   return { select, onSelect: (listener) => listeners.push(listener), selected: () => selected };
 }

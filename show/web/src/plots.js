@@ -2,10 +2,12 @@
 import uPlot from 'uplot';
 import { indexAt, valueAt } from './data.js';
 import { element } from './layout.js';
+import { measure } from './rounding.js';
 import { PALETTE } from './theme.js';
+import { onDegrees, shown } from './units.js';
 
-const HEIGHT = 130;
-const GROUPS = ['Joints', 'Rates', 'Outputs', 'Inputs', 'Energy', 'Violations'];
+const HEIGHT = 150;
+const GROUPS = ['Joints', 'Rates', 'Free bodies', 'Outputs', 'Inputs', 'Energy', 'Violations'];
 
 // Columns of the first run by group, title and unit; beside each, those of other runs that it is compared with.
 function charts(scenes) {
@@ -58,8 +60,9 @@ function slice(chart, from, to, width) {
     const { time } = lines[0];
     const columns = lines.map((line) => line.column.values);
     const chosen = thin(time, columns, from, to, Math.max(50, width));
-    const shown = (v) => (Number.isFinite(v) && !(chart.log && v < 1e-25) ? v : null);
-    tables.push([chosen.map((k) => time[k]), ...columns.map((values) => chosen.map((k) => shown(values[k])))]);
+    const { factor } = shown(chart.unit);
+    const drawn = (v, { nothing }) => (Number.isFinite(v) && !(chart.log && v < 1e-25) ? (nothing ? 0 : factor * v) : null);
+    tables.push([chosen.map((k) => time[k]), ...lines.map((line) => chosen.map((k) => drawn(line.column.values[k], line)))]);
   }
   return tables.length > 1 ? uPlot.join(tables, tables.map((table) => table.slice(1).map(() => 2))) : tables[0];
 }
@@ -79,7 +82,7 @@ export function plots(place, scenes, clock, theme) {
   const make = (chart, box) => {
     const ink = () => theme.colours.ink;
     const axis = (more) => ({
-      stroke: ink, grid: { stroke: () => theme.colours.faint, width: 1 }, ticks: { stroke: () => theme.colours.faint },
+      stroke: ink, grid: { stroke: () => theme.colours.faint, width: 1 }, ticks: { stroke: () => theme.colours.faint, size: 5 },
       font: '11px system-ui, sans-serif', ...more,
     });
     const perRun = chart.lines.filter((line) => line.run === 0).length || chart.lines.length;
@@ -104,13 +107,13 @@ export function plots(place, scenes, clock, theme) {
         y: chart.log ? { distr: 3 } : { range: (_, low, high) => room(low, high) },
       },
       axes: [
-        axis({ size: 28, values: (_, ticks) => ticks.map((t) => +t.toPrecision(6)) }),
+        axis({ size: 26, label: 't [s]', labelSize: 16, labelGap: 0, gap: 2, labelFont: '11px system-ui, sans-serif', values: (_, ticks) => ticks.map((t) => +t.toPrecision(6)) }),
         axis({ size: 62, values: (_, ticks) => ticks.map((v) => (v === null ? '' : v === 0 ? '0' : short(v))) }),
       ],
       series: [{ label: 't', value: (_, v) => (v === null ? '–' : `${+v.toPrecision(8)} s`) }, ...series],
       hooks: {
         // Scales are set some time after they are asked for.
-        draw: [() => drawn?.point()],
+        draw: [(u) => { markEvents(u, scenes[0].events, theme.colours.ink); drawn?.point(); }],
         setCursor: [(u) => { if (drawn) drawn.read(u.cursor.idx === null || u.cursor.left < 0 ? clock.t : u.posToVal(u.cursor.left, 'x')); }],
         setSelect: [(u) => {
           if (u.select.width < 4) return;
@@ -140,7 +143,11 @@ export function plots(place, scenes, clock, theme) {
       u,
       chart,
       read(t) {
-        chart.lines.forEach(({ column, time }, k) => { values[k].textContent = number(kept(valueAt(time, column.values, t), column)); });
+        chart.lines.forEach(({ column, time }, k) => {
+          const { nothing } = chart.lines[k];
+          const value = nothing ? `0 (rounding, below ${nothing.toExponential(0)})` : number(shown(chart.unit).factor * kept(valueAt(time, column.values, t), column));
+          if (values[k].textContent !== value) values[k].textContent = value;
+        });
       },
       point() {
         if (!(u.cursor.left >= 0)) drawn.read(clock.t);
@@ -165,21 +172,53 @@ export function plots(place, scenes, clock, theme) {
   }, { root: place, rootMargin: '200px' });
 
   let group = null;
-  for (const chart of charts(scenes)) {
+  const all = charts(scenes);
+  measure(all);
+  const captions = [];
+  for (const chart of all) {
     if (chart.group !== group) place.append(element('h2', {}, chart.group));
     group = chart.group;
-    const unit = chart.unit && chart.unit !== '1' ? ` [${chart.unit}]` : '';
+    const title = element('span', {});
+    captions.push(() => {
+      const { unit } = shown(chart.unit);
+      const isNothing = chart.lines.every(({ nothing }) => nothing);
+      title.textContent = chart.title.replaceAll('_', ' ') + (unit && unit !== '1' ? ` [${unit}]` : '') + (isNothing ? ': rounding alone, drawn as zero' : '');
+    });
     const box = element('div', { class: 'chart' });
     box.chart = chart;
     box.legend = element('div', { class: 'legend' });
-    place.append(element('figure', {}, element('figcaption', {}, chart.title.replaceAll('_', ' ') + unit, box.legend), box));
+    place.append(element('figure', {}, element('figcaption', {}, title, box.legend), box));
     box.style.minHeight = `${HEIGHT}px`;
     coming.observe(box);
   }
+  const caption = () => captions.forEach((write) => write());
+  caption();
+  const showAll = () => { caption(); for (const chart of made) chart.show(); };
+  onDegrees(showAll);
   clock.listen(() => { for (const chart of made) chart.point(); });
   theme.listen(() => { for (const { u } of made) u.redraw(false); });
   new ResizeObserver(() => { for (const chart of made) chart.resize(); }).observe(place);
-  return { made, zoom, range: () => range, renew: () => { for (const chart of made) chart.show(); } };
+  return { made, zoom, range: () => range, renew: () => { measure(all); showAll(); } };
+}
+
+// A dashed line for each event.
+function markEvents(u, events, colour) {
+  const { ctx, bbox: { left, top, width, height } } = u;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(left, top, width, height);
+  ctx.clip();
+  ctx.strokeStyle = colour;
+  ctx.globalAlpha = Math.max(0.15, 0.6 - events.length / 200);
+  ctx.setLineDash([2, 3]);
+  ctx.beginPath();
+  for (const [t] of events) {
+    const x = Math.round(u.valToPos(t, 'x', true)) + 0.5;
+    ctx.moveTo(x, top);
+    ctx.lineTo(x, top + height);
+  }
+  ctx.stroke();
+  ctx.restore();
 }
 
 // As many digits as the page keeps.

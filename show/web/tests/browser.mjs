@@ -180,6 +180,91 @@ const tests = {
     return page;
   },
 
+  async 'a camera follows what flies far, and standard views look along the axes'(browser) {
+    const page = await open(browser, at('thrown'));
+    const seen = (t) => page.evaluate((time) => {
+      const { picture: { camera, all, draw, boxes }, clock } = globalThis.gyroPage;
+      clock.seek(time);
+      draw();
+      const { x, y } = all[0].bodies[0].group.getWorldPosition(camera.position.clone()).project(camera);
+      return { x, y, follows: boxes.c.checked };
+    }, t);
+    for (const t of [0, 1, 2]) {
+      const { x, y, follows } = await seen(t);
+      assert.ok(follows && Math.hypot(x, y) < 0.7, `at ${t} s the stone is at ${x}, ${y}`);
+    }
+    const back = { 1: [0, -1, 0], 2: [0, 0, 1], 3: [1, 0, 0], 4: [1, -1, 1] };
+    for (const [key, [x, y, z]] of Object.entries(back)) {
+      await page.keyboard.press(key);
+      const off = await page.evaluate((v) => {
+        const { camera, controls } = globalThis.gyroPage.picture;
+        const along = camera.position.clone().sub(controls.target).normalize();
+        return along.distanceTo(along.clone().set(...v).normalize());
+      }, [x, y, z]);
+      assert.ok(off < 2e-3, `view ${key} is off by ${off}`);
+    }
+    await page.keyboard.press('c');
+    const far = await seen(2);
+    assert.ok(!far.follows && Math.hypot(far.x, far.y) > 0.3, JSON.stringify(far));
+    const quiet = await open(browser, at('gyroscope'));
+    assert.equal(await quiet.evaluate(() => globalThis.gyroPage.picture.boxes.c.checked), false);
+    assert.deepEqual(quiet.errors, []);
+    return page;
+  },
+
+  async 'free bodies are plotted, events marked, angles in degrees, units raised, rounding said, colours kept'(browser) {
+    const page = await open(browser, at('thrown'));
+    const captions = async () => (await page.locator('figcaption').allTextContents()).join('\n');
+    for (const words of ['stone position [m]', 'stone orientation', 'stone velocity [m/s]', 'wag [rad]', 'felt [m/s²]']) {
+      assert.ok((await captions()).includes(words), `${words} is missing in ${await captions()}`);
+    }
+    await page.keyboard.press('d');
+    assert.ok((await captions()).includes('wag [°]') && (await captions()).includes('[°/s]'));
+    const { fall, last, most, events, marks, colour } = await page.evaluate(() => {
+      const { scenes: [scene], picture, charts, clock } = globalThis.gyroPage;
+      const column = (title, name) => scene.columns.find((c) => c.title === title && c.name === name).values;
+      const end = scene.n - 1;
+      clock.seek(scene.events[0][0]);
+      return {
+        // Of both bodies together the centre falls freely; the stone is never far from it.
+        fall: column('stone position', 'z')[end] - (10 * 2 - (9.81 * 4) / 2),
+        last: charts.made[0].u.data[1].at(-1),
+        most: column('wag', '')[end],
+        events: scene.events,
+        marks: document.querySelectorAll('.marks i').length,
+        colour: picture.all[0].bodies[0].group.children[0].material.color.getHexString(),
+      };
+    });
+    assert.ok(Math.abs(fall) < 0.3, `${fall}`);
+    assert.ok(Math.abs(last - (most * 180) / Math.PI) < 1e-3 * Math.abs(last), `${last}° for ${most} rad`);
+    assert.ok(events.length > 0 && marks === events.length, `${events.length} events, ${marks} marks`);
+    assert.match(await page.locator('.event').textContent(), /apex/);
+    assert.equal(colour, 'b22222');
+    // Torques of 3e-16 N·m beside forces of a newton are none; of 3e-3, they are.
+    for (const [size, isNothing] of [[3e-16, true], [3e-3, false]]) {
+      await page.evaluate((value) => {
+        const { scenes: [scene], charts } = globalThis.gyroPage;
+        for (const { title, unit, values } of scene.columns) if (title === 'force' && unit === 'N*m') values.fill(value);
+        charts.renew();
+      }, size);
+      assert.equal((await captions()).includes('force [N·m]: rounding alone, drawn as zero'), isNothing, await captions());
+    }
+    return page;
+  },
+
+  async 'picture and video are saved'(browser) {
+    const page = await open(browser, at('thrown'));
+    const [sizes, kinds, t] = await page.evaluate(async () => {
+      const { picture, clock } = globalThis.gyroPage;
+      clock.speed = 2;
+      const made = [await picture.png(), await picture.video()];
+      return [made.map(({ size }) => size), made.map(({ type }) => type), clock.t];
+    });
+    assert.ok(sizes.every((size) => size > 5000), `${sizes}`);
+    assert.ok(kinds[0] === 'image/png' && kinds[1].startsWith('video/') && t === 2, `${kinds} ${t}`);
+    return page;
+  },
+
   async 'whatever can be shown on request is shown'(browser) {
     const page = await open(browser, at('compared'));
     for (const key of ['f', 't', 'i', 'l', 'a', 'g', 'r']) await page.keyboard.press(key);

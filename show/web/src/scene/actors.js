@@ -33,7 +33,10 @@ export class Actors {
       group.userData = { body: b, run };
       const colour = body.support === 'fixed' || (body.support === 'driven' && !(body.mass > 0)) ? colours.fixed : PALETTE[moving++ % PALETTE.length];
       const materials = this.palette(b, run ? '#e08030' : colour, colours);
-      for (const part of this.form.parts[b]) group.add(solid(part, materials, down));
+      for (const part of this.form.parts[b]) {
+        const own = part.color ? { ...materials, body: this.materials.get(part.color, part.color) } : materials;
+        group.add(solid(part, own, down));
+      }
       const ghost = this.form.ghosts[b];
       if (ghost && !run) {
         const see = this.materials.get(`ghost${b}`, colour, { transparent: true, opacity: 0.16, depthWrite: false });

@@ -10,7 +10,10 @@ import { Actors } from './actors.js';
 import { Arrows } from './arrows.js';
 import { Names } from './names.js';
 import { Trails } from './trails.js';
-import { corners, direction, fit, upOf } from './view.js';
+import { degrees } from '../units.js';
+import { recorder } from './record.js';
+import { triad } from './triad.js';
+import { corners, direction, fit, middle, standard, upOf } from './view.js';
 
 function renderer(canvas) {
   const context = canvas.getContext('webgl2', { antialias: true, preserveDrawingBuffer: true });
@@ -45,6 +48,9 @@ export function picture(place, scenes, clock, theme, numbers) {
   const up = upOf(scenes[0].mechanism);
   const points = all.flatMap(corners).map((p) => p.divideScalar(size));
   const from = direction(scenes[0], up, all[0].form);
+  const near = all[0].scene.bodies.some(({ moves }) => moves) ? corners(all[0], true).map((p) => p.divideScalar(size)) : points;
+  const overlay = element('canvas', { class: 'triad', width: 144, height: 144 });
+  place.picture.append(overlay);
 
   const camera = new PerspectiveCamera(28, 1, 0.01, 100);
   const controls = new OrbitControls(camera, canvas);
@@ -68,14 +74,40 @@ export function picture(place, scenes, clock, theme, numbers) {
   world.add(frames);
 
   let waiting = false;
+  // Where the camera looks at while it follows.
+  let followed = null;
+  const follow = () => {
+    if (!followed) return;
+    const now = middle(all[0]).divideScalar(size);
+    const by = now.clone().sub(followed);
+    followed = now;
+    camera.position.add(by);
+    controls.target.add(by);
+  };
   const draw = () => {
     waiting = false;
     all.forEach((actors) => actors.show(clock.t));
+    follow();
     trails.show(clock.t);
     arrows.show(clock.t);
     world.updateMatrixWorld();
     names.show(camera, canvas);
     gl.render(world, camera);
+    const context = overlay.getContext('2d');
+    context.clearRect(0, 0, 144, 144);
+    triad(context, camera, [72, 72], 64);
+  };
+  const compose = (onto) => {
+    draw();
+    [onto.width, onto.height] = [canvas.width & ~1, canvas.height & ~1];
+    const context = onto.getContext('2d');
+    context.drawImage(canvas, 0, 0);
+    const radius = 32 * gl.getPixelRatio();
+    triad(context, camera, [onto.width - 1.2 * radius, onto.height - 1.2 * radius], radius);
+    context.fillStyle = theme.colours.ink;
+    context.textAlign = 'left';
+    context.font = `${radius / 2.2}px system-ui, sans-serif`;
+    context.fillText(`t = ${place.time.textContent}`, radius / 2, onto.height - radius / 2);
   };
   const ask = () => { if (!waiting) { waiting = true; requestAnimationFrame(draw); } };
   // Another run of the same bodies.
@@ -92,7 +124,17 @@ export function picture(place, scenes, clock, theme, numbers) {
     all[0].select(numbers.selected());
     renew();
   };
-  const home = () => { fit(camera, controls.target, points, from, up); controls.update(); ask(); };
+  const look = (way) => {
+    all.forEach((actors) => actors.show(clock.t));
+    followed &&= middle(all[0]).divideScalar(size);
+    const at = followed;
+    fit(camera, controls.target, at ? near.map((p) => p.clone().add(at)) : points, way, up);
+    controls.update();
+    ask();
+  };
+  const home = () => look(from);
+  const views = standard(up);
+  const { png, video } = recorder(scenes[0].mechanism.name, clock, compose);
 
   const toggles = {
     f: ['frames', false, (on) => ownAxes.forEach((axes) => { axes.visible = on; })],
@@ -101,6 +143,8 @@ export function picture(place, scenes, clock, theme, numbers) {
     l: ['names', false, (on) => names.turn(on)],
     a: ['forces', false, (on) => arrows.turn(on)],
     g: ['ground', true, (on) => { ground.group.visible = on; }],
+    c: ['follow', isLong(points, near), (on) => { if (on !== Boolean(followed)) { followed = on ? new Vector3() : null; home(); } }],
+    d: ['degrees', false, degrees],
   };
   const boxes = {};
   for (const [key, [words, on, apply]] of Object.entries(toggles)) {
@@ -111,8 +155,15 @@ export function picture(place, scenes, clock, theme, numbers) {
     place.options.append(element('label', { title: `${words} (${key.toUpperCase()})` }, box, words));
     apply(on);
   }
+  const press = (words, key, action) => place.options.append(element('button', { type: 'button', title: `${words} (${key.toUpperCase()})`, onclick: action }, words));
+  for (const [key, [words, way]] of Object.entries(views)) press(words, key, () => look(way));
+  press('PNG', 'p', png);
+  press('video', 'v', video);
   addEventListener('picture-key', ({ detail: key }) => {
     if (key === 'r') home();
+    if (views[key]) look(views[key][1]);
+    if (key === 'p') png();
+    if (key === 'v') video();
     if (key === 'escape') numbers.select(null);
     if (boxes[key]) { boxes[key].checked = !boxes[key].checked; boxes[key].onchange(); }
   });
@@ -171,10 +222,16 @@ export function picture(place, scenes, clock, theme, numbers) {
   resize();
   controls.addEventListener('change', ask);
   clock.listen(ask);
-  return { canvas, camera, controls, home, draw, renew, remake, boxes, all, arrows, gl, points, under };
+  return { canvas, camera, controls, home, draw, renew, remake, boxes, all, arrows, gl, points, under, png, video, views, look };
 }
 
 const most = (points, value) => points.reduce((best, p) => Math.max(best, value(p)), -Infinity);
+
+// Whether a motion is much longer than the mechanism, which would be a dot in a picture of the whole.
+function isLong(points, near) {
+  const longest = (all) => Math.max(...[0, 1, 2].map((k) => most(all, (p) => p.getComponent(k)) + most(all, (p) => -p.getComponent(k))));
+  return longest(points) > 6 * longest(near);
+}
 
 // A round of ground below all that moves, with its shadow.
 function groundBelow(points, up, thick) {

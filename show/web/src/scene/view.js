@@ -78,19 +78,38 @@ function outline(group) {
   return found;
 }
 
-// Points of all bodies at times of the run.
-export function corners(actors) {
+// The middle of what moves, at a time that is shown.
+export function middle({ bodies, scene }) {
+  const moving = bodies.filter((_, b) => scene.bodies[b].moves);
+  return moving.reduce((sum, { group }) => sum.addScaledVector(group.position, 1 / moving.length), new Vector3());
+}
+
+// The standard views: from where, with x to the right or, of the one from the side, towards the camera.
+export function standard(up) {
+  const right = new Vector3(1, 0, 0);
+  if (Math.abs(right.dot(up)) > 0.9) right.set(0, 0, 1);
+  right.addScaledVector(up, -right.dot(up)).normalize();
+  const front = right.clone().cross(up);
+  // Not quite from above: which way is up stays.
+  const top = up.clone().addScaledVector(front, 1e-3).normalize();
+  return { 1: ['front', front], 2: ['top', top], 3: ['side', right], 4: ['corner', front.clone().add(right).add(up).normalize()] };
+}
+
+// Points of all bodies at times of the run; or of those that move, from the middle of these.
+export function corners(actors, fromMiddle = false) {
   const outlines = actors.bodies.map(({ group }) => outline(group));
   const found = [];
-  const add = (point, { position, quaternion }) => found.push(point.clone().applyQuaternion(quaternion).add(position));
+  const add = (point, { position, quaternion }, about) => found.push(point.applyQuaternion(quaternion).add(position).sub(about));
   for (const t of looks(actors.scene, 40)) {
     actors.show(t);
+    const about = fromMiddle ? middle(actors) : new Vector3();
     outlines.forEach((points, b) => {
+      if (fromMiddle && !actors.scene.bodies[b].moves) return;
       // What stands still is looked at once.
       if (t > actors.scene.time[0] && !actors.scene.bodies[b].moves) return;
-      for (const point of points) add(point, actors.bodies[b].group);
+      for (const point of points) add(point.clone(), actors.bodies[b].group, about);
     });
-    for (const { ends } of actors.stretched) for (const [b, at] of ends) add(new Vector3(...at), actors.bodies[b].group);
+    for (const { ends } of actors.stretched) for (const [b, at] of ends) if (!fromMiddle) add(new Vector3(...at), actors.bodies[b].group, about);
   }
   return found;
 }
