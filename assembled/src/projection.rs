@@ -1,9 +1,11 @@
 //! The smallest motion, in the metric of the masses, that changes the rows as asked: eq. (17) whole and dense, without
 //! forces.
 
+use crate::dense::matrix;
 use crate::model::lowered::Lowered;
 use crate::model::place::Moment;
 use crate::number::{Number, abs};
+use nalgebra::DVector;
 
 /// Writes the change of the velocities' coordinates. All forms alike: by Gaussian elimination with row pivoting, in
 /// work space that the first call allocates.
@@ -14,6 +16,15 @@ pub(crate) fn project<T: Number>(
     work: &mut Vec<T>,
     out: &mut [T],
 ) {
+    if lowered.n_dependent > 0 {
+        let n_v = lowered.scene.n_v();
+        let right =
+            DVector::from_fn(n_v + rows.len(), |k, _| if k < n_v { T::zero() } else { rows[k - n_v] });
+        let solved = matrix(lowered, at).lu().solve(&right);
+        let change = |k: usize| solved.as_ref().map_or(T::zero() / T::zero(), |solved| solved[k]);
+        out.iter_mut().enumerate().for_each(|(k, out)| *out = change(k));
+        return;
+    }
     let n = lowered.scene.n_v() + lowered.n_rows();
     build(lowered, at, rows, work);
     solve(work, n);

@@ -147,8 +147,9 @@ fn closure(model: &Model, start: &Start) -> String {
             format!("The start was closed by moving {}{more}.\n", shown.collect::<Vec<_>>().join(", "))
         }
     };
-    if !model.redundant.is_empty() {
-        let rows = count(model.redundant.len() as u64, "constraint row");
+    let dropped = model.dropped().count();
+    if dropped > 0 {
+        let rows = count(dropped as u64, "constraint row");
         let _ = writeln!(text, "{rows} dropped, as the others imply them.");
     }
     text

@@ -50,7 +50,9 @@ fn is_balanced(scene: &Scene) -> Option<bool> {
         return Some(false);
     }
     let mut dense = Dense::<f64>::new(&scene.model).ok()?;
-    inputs.iter().for_each(|input| dense.set_input(input.index, input.at(0.0)));
+    for input in inputs {
+        dense.set_input(input.index, input.at(0.0)).then_some(())?;
+    }
     let mut y = dense.start();
     let state: &mut [f64] = y.as_mut();
     state.iter_mut().zip(positions.iter().chain(velocities)).for_each(|(to, from)| *to = *from);

@@ -138,7 +138,7 @@ impl Inspection {
                 "constraint equations",
                 format!("{constraints}: {rows} joint rows, {} normalisations", sheet.bodies.len()),
             ),
-            ("redundant rows dropped", self.model.redundant.len().to_string()),
+            ("redundant rows dropped", self.model.dropped().count().to_string()),
             ("degrees of freedom", sheet.degrees_of_freedom().to_string()),
             ("unknowns of eq. (17)", sheet.unknowns().to_string()),
             ("non-zeros of Φ_q", format!("{} of {}", sheet.phi_q, constraints * coordinates)),

@@ -62,13 +62,14 @@ pub(crate) fn note(words: &str) {
     let _ = writeln!(std::io::stderr(), "note: {words}");
 }
 
-/// The message about a dropped row: whose it is, what it says, and whose multipliers are not unique without it.
+/// The message about a redundant row: whose it is, what it says, and whose multipliers are not unique without it.
 pub(crate) fn describe(model: &Model, dropped: &RedundantRow) -> String {
     let row = dropped.row;
     let shared: Vec<String> =
         dropped.shared_with.iter().filter(|other| **other != row.owner).map(|o| owner(model, *o)).collect();
     let with = if shared.is_empty() { "its other rows".to_owned() } else { shared.join(", ") };
-    format!("{} depends on {with} and is dropped; how these share a load is not unique", model.row_named(row))
+    let dropped = if dropped.stays { "" } else { " and is dropped" };
+    format!("{} depends on {with}{dropped}; how these share a load is not unique", model.row_named(row))
 }
 
 /// One sentence about all dropped rows: which they are, and what of reactions is not unique without them.

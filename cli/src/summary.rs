@@ -136,8 +136,13 @@ fn mechanism(scene: &Scene) -> String {
     let freedom = model.degrees_of_freedom() as u64;
     let mut text =
         if freedom == 1 { "1 degree of freedom".to_owned() } else { format!("{freedom} degrees of freedom") };
-    if !model.redundant.is_empty() {
-        let _ = write!(text, ", {} dropped", count(model.redundant.len() as u64, "redundant row"));
+    let dropped = model.dropped().count();
+    if dropped > 0 {
+        let _ = write!(text, ", {} dropped", count(dropped as u64, "redundant row"));
+    }
+    let stay = model.redundant.len() - dropped;
+    if stay > 0 {
+        let _ = write!(text, ", {} kept", count(stay as u64, "redundant row"));
     }
     text.push('\n');
     for (index, input) in model.inputs.iter().enumerate() {

@@ -75,6 +75,7 @@ use groups::Facts;
 use joint_space::{Candidates, Coordinates, JointSpace, obstacle};
 use kernels::Kernels;
 use solve::Solution;
+use solve::dependence::Yielding;
 use solve::forward_dynamics::ForwardDynamics;
 use solve::partition::Partition;
 
@@ -260,7 +261,11 @@ fn equations<'m>(
     let functions = &functions.clone().of_mechanism(facts(&system));
     // Accelerations at any state are a form of those at corrected states, too.
     let is_solved = functions.has(Group::Maximal) || functions.has(Group::Corrected);
-    let forward_dynamics = ForwardDynamics::of(&mut system, &textbook.kinematics);
+    let mut yielding = Yielding::new();
+    if !model.dependent_rows().is_empty() {
+        yielding = Coordinates::derive(&mut system, &textbook).yielding(&mut system);
+    }
+    let forward_dynamics = ForwardDynamics::of(&mut system, &textbook.kinematics, yielding);
     let solution = Solution::of(&mut system, &textbook, &forward_dynamics, (elimination, is_solved));
     let observed = Observed::derive(&mut system, &textbook, &solution.lambda);
     let has_charts = functions.has(Group::Partition);

@@ -90,7 +90,7 @@ pub struct Model {
     pub events: Vec<Event>,
     /// Rigid stops and friction that sticks: generated code has their forces, as inputs; runs do the rest.
     pub contacts: Vec<Contact>,
-    /// Constraint rows that depend on others and were dropped: found by rank when the model file was read.
+    /// Constraint rows that depend on others and were dropped, or stay: found by rank when the model file was read.
     pub redundant: Vec<RedundantRow>,
     /// Whether the state carries the work of what is not conservative, where there is such: see [`Model::has_work`].
     pub counts_work: bool,
@@ -310,7 +310,7 @@ pub enum RowOwner {
 /// A constraint row that depends on the others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RedundantRow {
-    /// The row that was dropped.
+    /// The row.
     pub row: Row,
     /// Along which axes its owner's point rows are, those that stay among them: see [`Model::point_axes`].
     pub axes: PointAxes,
@@ -319,6 +319,9 @@ pub struct RedundantRow {
     /// Of each joint that takes part, by its index, which numbers of its reaction (three of the force, three of the
     /// torque) the multipliers of this row could change at will: these are not unique.
     pub loads: Vec<(usize, [bool; 6])>,
+    /// Whether the row stays, as how it depends on the others changes along the motion (Bennett's linkage): no
+    /// choice of rows keeps its rank everywhere. See [`Model::dependent_rows`].
+    pub stays: bool,
 }
 
 /// The axes along which coincident points are compared, paper eq. (7).

@@ -2,7 +2,7 @@
 
 use crate::{
     CoordinateKind, CoordinateUse, Force, ForceKind, JointCoordinate, JointKind, Model, Number, Parameter,
-    PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Support, analyse, to_f64,
+    PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Support, Tree, analyse, to_f64,
 };
 use std::ops::Range;
 
@@ -157,7 +157,46 @@ impl Model {
     /// A coupler has `second − ratio · first − offset`, a driver `coordinate − motion(t)`.
     pub fn rows(&self) -> Vec<Row> {
         let all = self.all_rows();
-        all.into_iter().filter(|row| !self.redundant.iter().any(|dropped| dropped.row == *row)).collect()
+        all.into_iter().filter(|row| !self.dropped().any(|dropped| dropped.row == *row)).collect()
+    }
+
+    /// The redundant rows that are not there.
+    pub fn dropped(&self) -> impl Iterator<Item = &RedundantRow> {
+        self.redundant.iter().filter(|row| !row.stays)
+    }
+
+    /// Rows of which some always depend on the others, but not always the same ones: sets of places among
+    /// [`Model::rows`], of all rows of owners that share a dependency and are not of the trees.
+    pub fn dependent_rows(&self) -> Vec<Vec<usize>> {
+        let mut sets: Vec<Vec<RowOwner>> = Vec::new();
+        for redundant in self.redundant.iter().filter(|row| row.stays) {
+            let mut owners = vec![redundant.row.owner];
+            owners.extend(&redundant.shared_with);
+            let (joined, apart) =
+                sets.into_iter().partition(|set: &Vec<_>| set.iter().any(|owner| owners.contains(owner)));
+            let joined: Vec<Vec<_>> = joined;
+            owners.extend(joined.into_iter().flatten());
+            sets = apart;
+            sets.push(owners);
+        }
+        let tree = Tree::of_coordinates(self);
+        let closes = |owner: RowOwner| match owner {
+            RowOwner::Joint(joint) => tree.loop_joints.contains(&joint),
+            RowOwner::Body(_) | RowOwner::Driver(_) | RowOwner::Coupler(_) => false,
+        };
+        let rows = self.rows();
+        let of = |set: Vec<RowOwner>| {
+            let own = |place: &usize| closes(rows[*place].owner) && set.contains(&rows[*place].owner);
+            (0..rows.len()).filter(own).collect()
+        };
+        sets.into_iter().map(of).collect()
+    }
+
+    /// Powers of two that are near the mechanism's size, m, and mass, kg: units in which dependent rows are compared.
+    pub fn units_of_dependence(&self) -> [i32; 2] {
+        let masses = self.coordinate_bodies().into_iter().map(|body| self.value(&self.bodies[body].mass));
+        let mass: f64 = masses.sum();
+        [self.size(), mass].map(|unit| if unit > 0.0 { unit.log2().round() as i32 } else { 0 })
     }
 
     /// Along which axes the rows of a joint compare its points: global ones, unless the joint loses some of these rows
@@ -298,7 +337,9 @@ impl Model {
     /// The rows that are dropped shape the formulas: other parameters must leave them as they are.
     fn keeps_redundant_rows(&self) -> Result<(), String> {
         let found = analyse(self).map_err(|error| error.to_string())?;
-        let rows = |redundant: &[RedundantRow]| redundant.iter().map(|r| (r.row, r.axes)).collect::<Vec<_>>();
+        let rows = |redundant: &[RedundantRow]| {
+            redundant.iter().map(|r| (r.row, r.axes, r.stays)).collect::<Vec<_>>()
+        };
         if rows(&found.redundant) == rows(&self.redundant) {
             return Ok(());
         }

@@ -145,6 +145,7 @@ fn expected_head(model: &Model, module: &Module) -> Vec<String> {
     let moving_bodies = model.coordinate_bodies();
     let bodies: Vec<&str> = moving_bodies.iter().map(|&body| model.bodies[body].name.as_str()).collect();
     let (n, rows) = (moving_bodies.len(), model.rows().len());
+    let dependent = model.redundant.len() - model.dropped().count();
     let mut lines = vec![
         format!("The mechanism `{}`.", model.name),
         String::new(),
@@ -154,7 +155,7 @@ fn expected_head(model: &Model, module: &Module) -> Vec<String> {
             7 * n,
             rows + n
         ),
-        format!("* degrees of freedom: {}", (6 * n).saturating_sub(rows)),
+        format!("* degrees of freedom: {}", (6 * n + dependent).saturating_sub(rows)),
         format!("* unknowns of eq. (17): {}", 6 * n + rows),
     ];
     if module.implements("Kinematics") {
@@ -185,7 +186,7 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
         };
         left_out.push(format!("coordinates of `{}` ({why})", body.name));
     }
-    for redundant in &model.redundant {
+    for redundant in model.dropped() {
         let (kind, name) = match redundant.row.owner {
             RowOwner::Body(body) => ("body", &model.bodies[body].name),
             RowOwner::Joint(joint) => ("joint", &model.joints[joint].name),

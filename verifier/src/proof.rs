@@ -5,6 +5,7 @@ mod claim;
 mod closure;
 mod compare;
 mod decide;
+mod dependence;
 mod elimination;
 mod joints;
 mod observed;

@@ -79,6 +79,12 @@ fn with_section(module: &str, lines: &[String]) -> String {
 fn claims(model: &Model, module: &Module) -> Vec<Claim> {
     let mut claims = Claim::all(module);
     claims.retain(|claim| *claim != Claim::Outputs || !model.outputs.is_empty());
+    // Where rows depend on each other, the forces that they share and the motion off the trees' joints are left open.
+    let is_open = |claim: &Claim| {
+        use Claim::{CorrectedMultipliers, CorrectedSolution, Motion, Projection};
+        matches!(claim, CorrectedMultipliers | CorrectedSolution | Motion | Projection)
+    };
+    claims.retain(|claim| model.dependent_rows().is_empty() || !is_open(claim));
     claims
 }
 

@@ -6,9 +6,10 @@ use crate::assembled::{Refusal, Solver};
 use crate::error::Unsupported;
 use crate::model::lowered::Lowered;
 use crate::model::place::Moment;
-use crate::number::Number;
+use crate::number::{Number, number};
 use gyro_model::{Model, Tree};
 use nalgebra::{DMatrix, DVector};
+use partition::row_scale;
 
 /// Builds the dense matrix of eq. (17) and solves it by LU with partial pivoting, on the heap, at every evaluation.
 ///
@@ -92,7 +93,7 @@ fn solve<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> DVector<T> {
 }
 
 /// `[M 0 Φ_rᵀ; 0 J' Φ_π'ᵀ; Φ_r Φ_π' 0]`, velocities ordered `(s, w')` body after body.
-fn matrix<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> DMatrix<T> {
+pub(crate) fn matrix<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> DMatrix<T> {
     let n_v = lowered.scene.n_v();
     let mut matrix = DMatrix::zeros(n_v + lowered.n_rows(), n_v + lowered.n_rows());
     for (moving_body, body) in lowered.scene.bodies.iter().enumerate() {
@@ -105,5 +106,36 @@ fn matrix<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> DMatrix<T> {
         matrix[(n_v + row, column)] = value;
         matrix[(column, n_v + row)] = value;
     });
+    if lowered.n_dependent > 0 {
+        yield_dependent(lowered, &mut matrix);
+    }
     matrix
+}
+
+/// Rows depend on others by combinations N, `Φᵀ N = 0`, of which there are always as many: found as the
+/// eigenvectors of `Φ M⁻¹ Φᵀ` that have the least eigenvalues. With `−N Nᵀ` in the corner the matrix is regular;
+/// `Nᵀ λ = 0` then, and the rows are met.
+fn yield_dependent<T: Number>(lowered: &Lowered<T>, matrix: &mut DMatrix<T>) {
+    let (n_v, n_rows) = (lowered.scene.n_v(), lowered.n_rows());
+    let scaled = |row: usize, column: usize| matrix[(n_v + column, row)] * row_scale(lowered, column);
+    let gradients = DMatrix::from_fn(n_v, n_rows, scaled);
+    let Some(responses) = matrix.view((0, 0), (n_v, n_v)).into_owned().lu().solve(&gradients) else { return };
+    let by_rows = gradients.tr_mul(&responses);
+    if !by_rows.iter().all(|entry| entry.is_finite()) {
+        return;
+    }
+    let size = by_rows.trace() / number(n_rows as f64);
+    let eigen = by_rows.symmetric_eigen();
+    let mut order: Vec<usize> = (0..n_rows).collect();
+    let value = |k: &usize| gyro_sim::Real::to_f64(eigen.eigenvalues[*k]);
+    order.sort_by(|a, b| value(a).total_cmp(&value(b)));
+    for &k in order.iter().take(lowered.n_dependent) {
+        let combination = eigen.eigenvectors.column(k);
+        for row in 0..n_rows {
+            for other in 0..n_rows {
+                let scales = row_scale(lowered, row) * row_scale(lowered, other);
+                matrix[(n_v + row, n_v + other)] -= size * combination[row] * combination[other] * scales;
+            }
+        }
+    }
 }

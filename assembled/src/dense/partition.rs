@@ -6,7 +6,7 @@ use crate::assembled::Refusal;
 use crate::model::lowered::Lowered;
 use crate::model::place::Moment;
 use crate::model::textbook::angular_velocity;
-use crate::number::{Number, abs, number, resolvable};
+use crate::number::{Number, abs, number, resolvable, sqrt};
 use nalgebra::{DMatrix, DVector, Dyn, LU, RowDVector, Vector4};
 
 /// The coordinates are chosen anew once the volume |det Φ_u| has fallen below this fraction of the best choice's.
@@ -26,10 +26,10 @@ pub(crate) struct Choice<T> {
 /// Full pivoting takes as many pivots as there are constraints; the columns left over are independent. Where there are
 /// too many constraints none is.
 pub(crate) fn best<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> Choice<T> {
-    let lu = jacobian(lowered, at).full_piv_lu();
+    let lu = Equations::of(lowered, at).jacobian.full_piv_lu();
     let mut columns = RowDVector::from_iterator(lowered.scene.n_q(), 0..lowered.scene.n_q());
     lu.q().permute_columns(&mut columns);
-    let n_dependent = n_constraints(lowered).min(lowered.scene.n_q());
+    let n_dependent = (n_constraints(lowered) - lowered.n_dependent).min(lowered.scene.n_q());
     let mut independent = columns.as_slice()[n_dependent..].to_vec();
     independent.sort_unstable();
     Choice { independent, log_volume: log_volume(lu.lu_internal()) }
@@ -38,7 +38,7 @@ pub(crate) fn best<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> Choice
 /// Replaces a choice whose volume is poor; returns how many coordinates were exchanged.
 pub(crate) fn follow<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, choice: &mut Vec<usize>) -> u32 {
     let best = best(lowered, at);
-    let present = factorise(&jacobian(lowered, at), choice);
+    let present = factorise(&Equations::of(lowered, at).jacobian, choice);
     let threshold = best.log_volume + number::<T>(POOR_VOLUME.ln());
     // Of a state that is not finite nothing can be told: the choice is kept.
     let poor = log_volume(present.lu_internal()) < threshold;
@@ -55,9 +55,18 @@ pub(crate) fn follow<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, choice:
 /// others. With the transposed Jacobian `Q R` the norm is that of R⁻¹, and a row's distance is one over the length of
 /// its row of R⁻¹.
 pub(crate) fn clearance<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>) -> (T, usize) {
-    let triangle = jacobian(lowered, at).transpose().qr().r();
+    let equations = Equations::of(lowered, at);
+    let triangle = equations.jacobian.transpose().qr().r();
     let n = triangle.ncols();
     let is_joint = |row: &usize| *row < lowered.n_rows();
+    if lowered.n_dependent > 0 {
+        // Perpendicular combinations of rows, of lengths that are the singular values.
+        let lengths: Vec<T> = equations.jacobian.row_iter().map(|row| row.norm()).collect();
+        let least = (0..n).fold(0, |least, k| if lengths[k] < lengths[least] { k } else { least });
+        let row = equations.combinations.map_or(0, |all| all.column(least).rows(0, lowered.n_rows()).iamax());
+        let squares = lengths.iter().fold(T::zero(), |sum, length| sum + T::one() / (*length * *length));
+        return (T::one() / sqrt(squares), row);
+    }
     let Some(inverse) = triangle.solve_upper_triangular(&DMatrix::identity(n, n)) else {
         let dependent = (0..n).find(|&row| triangle[(row, row)] == T::zero());
         return (T::zero(), dependent.filter(is_joint).unwrap_or(0));
@@ -89,7 +98,8 @@ pub(crate) fn newton_step<T: Number>(
     lowered.phi(Moment { t, y }, right.as_mut_slice());
     lowered.silence(Moment { t, y }, right.as_mut_slice());
     right.iter_mut().enumerate().for_each(|(row, phi)| *phi = -*phi * row_scale(lowered, row));
-    let (step, pivot) = solve(&jacobian(lowered, Moment { t, y }), choice, right.clone())?;
+    let equations = Equations::of(lowered, Moment { t, y });
+    let (step, pivot) = solve(&equations.jacobian, choice, equations.right(right.clone()))?;
     let (change, limit) = (step.amax(), pivot * number(TRUSTED));
     if change > limit {
         return Err(Refusal::Jump(change, limit, right.iamax()));
@@ -113,7 +123,8 @@ pub(crate) fn solve_velocities<T: Number>(
     lowered.velocity_residual(Moment { t, y }, &mut right.as_mut_slice()[..lowered.n_rows()]);
     right.iter_mut().enumerate().for_each(|(row, rate)| *rate = -*rate * row_scale(lowered, row));
     let residual = right.amax();
-    let (solution, pivot) = solve(&jacobian(lowered, Moment { t, y }), choice, right)?;
+    let equations = Equations::of(lowered, Moment { t, y });
+    let (solution, pivot) = solve(&equations.jacobian, choice, equations.right(right))?;
     let speed = y[lowered.scene.n_q()..lowered.scene.n_q() + lowered.scene.n_v()]
         .iter()
         .fold(T::zero(), |m, v| abs(*v).max(m));
@@ -143,7 +154,7 @@ fn dependent<T: Number>(lowered: &Lowered<T>, choice: &[usize]) -> impl Iterator
 }
 
 /// What the row is multiplied by.
-fn row_scale<T: Number>(lowered: &Lowered<T>, row: usize) -> T {
+pub(crate) fn row_scale<T: Number>(lowered: &Lowered<T>, row: usize) -> T {
     let is_length = lowered.row_infos.get(row).is_some_and(|row| row.is_length);
     if is_length { T::one() / lowered.size } else { T::one() }
 }
@@ -151,6 +162,35 @@ fn row_scale<T: Number>(lowered: &Lowered<T>, row: usize) -> T {
 /// The unit of the column's coordinate.
 fn column_scale<T: Number>(lowered: &Lowered<T>, column: usize) -> T {
     if column % 7 < 3 { lowered.size } else { T::one() }
+}
+
+/// The scaled Φ_q, or where rows depend on others, combinations of its rows that do not.
+struct Equations<T: Number> {
+    jacobian: DMatrix<T>,
+    /// In columns, where there are such.
+    combinations: Option<DMatrix<T>>,
+}
+
+impl<T: Number> Equations<T> {
+    fn of(lowered: &Lowered<T>, at: Moment<'_, T>) -> Self {
+        let jacobian = jacobian(lowered, at);
+        let rank = jacobian.nrows() - lowered.n_dependent;
+        if lowered.n_dependent == 0 || !jacobian.iter().all(|entry| entry.is_finite()) {
+            return Self { jacobian: jacobian.rows(0, rank).into_owned(), combinations: None };
+        }
+        // Singular values come in descending order.
+        let combinations = jacobian.clone().svd(true, false).u.expect("asked for");
+        let combinations = combinations.columns(0, rank).into_owned();
+        Self { jacobian: combinations.tr_mul(&jacobian), combinations: Some(combinations) }
+    }
+
+    /// The same combinations of a right side.
+    fn right(&self, right: DVector<T>) -> DVector<T> {
+        match &self.combinations {
+            Some(combinations) => combinations.tr_mul(&right),
+            None => right.rows(0, self.jacobian.nrows()).into_owned(),
+        }
+    }
 }
 
 /// The scaled Φ_q, normalisations included: 25×28 for the paper's gyroscope.

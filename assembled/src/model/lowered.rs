@@ -17,6 +17,8 @@ pub struct Lowered<T: Number> {
     pub(crate) scene: Scene<T>,
     pub(crate) rows: Vec<Row<T>>,
     pub(crate) row_infos: Vec<RowInfo>,
+    /// How many rows depend on the others, now these, now those.
+    pub(crate) n_dependent: usize,
     pub(crate) elements: Vec<Element<T>>,
     pub(crate) rotors: Vec<Rotor<T>>,
     pub(crate) outputs: Vec<Output<T>>,
@@ -43,6 +45,7 @@ impl<T: Number> Lowered<T> {
         let rows = model.rows();
         Ok(Self {
             rows: rows.iter().map(|row| Row::new(model, &moving_bodies, &scene.joints, row)).collect(),
+            n_dependent: model.redundant.len() - model.dropped().count(),
             row_infos: rows.iter().map(|row| row_info(&moving_bodies, row)).collect(),
             elements: Element::all(model, &places, &scene.joints),
             rotors: Rotor::all(model),

@@ -25,6 +25,8 @@ pub struct DataSheet {
     pub bodies: Vec<String>,
     /// Rows of joints, couplers and drivers.
     pub rows: usize,
+    /// How many of these depend on the others.
+    pub dependent: usize,
     /// Entries of Φ_q that are not zero, normalisations among them.
     pub phi_q: usize,
     /// Entries of (Φ_r, Φ_π') that are not zero.
@@ -73,6 +75,7 @@ impl DataSheet {
             mechanism: model.name.clone(),
             bodies: bodies.collect(),
             rows: equations.n_rows,
+            dependent: model.redundant.len() - model.dropped().count(),
             phi_q: equations.phi_q.len(),
             phi_pi: equations.phi_pi.len(),
             left_out: left_out(equations),
@@ -106,7 +109,7 @@ impl DataSheet {
 
     /// Degrees of freedom.
     pub fn degrees_of_freedom(&self) -> usize {
-        (6 * self.bodies.len()).saturating_sub(self.rows)
+        (6 * self.bodies.len() + self.dependent).saturating_sub(self.rows)
     }
 
     /// Unknowns of eq. (17): accelerations and multipliers.
@@ -237,7 +240,7 @@ fn left_out(equations: &Equations) -> Vec<String> {
             _ => None,
         })
         .collect();
-    left_out.extend(model.redundant.iter().map(|redundant| {
+    left_out.extend(model.dropped().map(|redundant| {
         let (owner, index) = (owner_name(model, redundant.row.owner), redundant.row.index + 1);
         format!("row {index} of {owner} (redundant)")
     }));

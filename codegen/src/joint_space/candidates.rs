@@ -48,23 +48,27 @@ impl Candidates {
         let Coordinates { embedding, links_of_dynamics: links, unit, along, .. } = coordinates;
         let armatures = coordinates.armatures(&mut system.graph);
         let (loads, along) = (&coordinates.loads, (along.as_slice(), armatures.as_slice()));
-        let rows = coordinates.remaining_rows(&mut system.graph);
+        let rows = coordinates.remaining_rows(system);
         let spins = dynamics::spins(system, links);
         let balance = JointDynamics::new(system, links, &spins, loads, along, (embedding, rows.clone()));
         let mut reductions = Vec::new();
         let mut eliminated = vec![("recursion", balance.recursion(system))];
         let tries_all = system.effort == Effort::Full;
-        if tries_all && embedding.n_unknowns <= MAX_FACTORED && rows.is_empty() {
+        if tries_all && embedding.n_unknowns <= MAX_FACTORED && rows.rows.is_empty() {
             eliminated.push((NORMAL_FORM, balance.factored(system, unit, &mut reductions)));
         }
-        if let Some(found) = planar::accelerations(system, coordinates) {
+        let independent = rows.yielding.is_empty();
+        if let Some(found) = independent.then(|| planar::accelerations(system, coordinates)).flatten() {
             eliminated.push((planar::PLANAR, found));
         }
         let n_in_bodies = eliminated.len();
         if let Some(tree) = AxisTree::new(system, coordinates, &coordinates.invariant) {
             if coordinates.closure.rows.is_empty() {
                 eliminated.extend(tree.forms(system));
-            } else if axis_loops::is_small(&tree, coordinates) && coordinates.cut_armatures.is_empty() {
+            } else if independent
+                && axis_loops::is_small(&tree, coordinates)
+                && coordinates.cut_armatures.is_empty()
+            {
                 eliminated
                     .push((axis_loops::WITH_ROWS, axis_loops::accelerations(system, &tree, coordinates)));
             }
@@ -78,7 +82,7 @@ impl Candidates {
         let spins = spins_at_hand(system, coordinates);
         let on_spins = JointDynamics::new(system, links, &spins, loads, along, (embedding, rows.clone()));
         let eliminated_on_spins = vec![("recursion on the bodies' spins", on_spins.recursion(system))];
-        let is_small = (2..=gram_schmidt::MAX_RATES).contains(&embedding.n_unknowns) && rows.is_empty();
+        let is_small = (2..=gram_schmidt::MAX_RATES).contains(&embedding.n_unknowns) && rows.rows.is_empty();
         let by_gram_schmidt = is_small.then(|| ("Gram–Schmidt", balance.by_gram_schmidt(system)));
         let by_gram_schmidt_on_spins = (is_small && tries_all)
             .then(|| ("Gram–Schmidt on the bodies' spins", on_spins.by_gram_schmidt(system)));

@@ -22,6 +22,10 @@ const HELD: i64 = 32;
 pub fn units(system: &mut System, layout: &Layout, by_rates: &Embedding) -> Vec<ExprId> {
     let held = system.graph.fraction(1, HELD);
     let mut units = vec![Graph::ONE; layout.n_rates];
+    // What rows yield that depend on others is made for rates as they are.
+    if !system.model.dependent_rows().is_empty() {
+        return units;
+    }
     for force in &system.model.forces {
         let (ForceKind::Spring { on, .. } | ForceKind::Stop { on, .. }) = force.kind else { continue };
         let Some(scalar) = layout.scalar(on) else { continue };

@@ -7,7 +7,7 @@ use super::determined;
 use super::embedding::Embedding;
 use super::layout::Layout;
 use super::link_kinematics::{self, LinkKinematics};
-use super::loops::Loops;
+use super::loops::{Loops, RemainingRows};
 use super::relation::{Determined, Relation};
 use super::whole_angles::WholeAngles;
 use super::{forces, maps};
@@ -20,6 +20,7 @@ use crate::expr::evaluate::Program;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::ZERO3;
+use crate::solve::dependence::{self, Yielding};
 use crate::solve::gram_schmidt::Armature;
 use gyro_model::{JointCoordinate, Model, RowOwner, Start, Tree};
 use std::f64::consts::PI;
@@ -225,12 +226,33 @@ impl Coordinates {
     }
 
     /// The rows that the unknowns must meet besides, with what they must come to.
-    pub fn remaining_rows(&self, graph: &mut Graph) -> Vec<(Vec<ExprId>, ExprId)> {
+    pub fn remaining_rows(&self, system: &mut System) -> RemainingRows {
+        let lightness = dependence::lightness(&mut system.graph, system.model);
+        let graph = &mut system.graph;
+        let mut yielding = self.loops.yielding_of_others();
+        yielding.values_mut().for_each(|entry| *entry = graph.mul(lightness, *entry));
         let row = |&row: &usize| {
             let jacobian = self.embedding.projected(graph, &self.closure.jacobian[row]);
             (jacobian, self.closure.gamma[row])
         };
-        self.loops.others.iter().map(row).collect()
+        RemainingRows { rows: self.loops.others.iter().map(row).collect(), yielding }
+    }
+
+    /// What rows that depend on each other yield where forces are compared, in terms of a maximal state, by their
+    /// places among all rows. Such a row on which no coordinate has an influence depends on nothing else.
+    pub fn yielding(&self, system: &mut System) -> Yielding {
+        let lightness = dependence::lightness(&mut system.graph, system.model);
+        let mut yielding = Yielding::new();
+        for set in system.model.dependent_rows() {
+            yielding.extend(set.into_iter().map(|row| ((row, row), lightness)));
+        }
+        let place = |place: usize| self.closure.rows[place];
+        let (places, entries): (Vec<_>, Vec<_>) = self.loops.yielding.iter().unzip();
+        let entries = Expansion::at(&system.definitions, &self.of_joints).all(&mut system.graph, &entries);
+        for (&(k, l), entry) in places.into_iter().zip(entries) {
+            yielding.insert((place(k), place(l)), system.graph.mul(lightness, entry));
+        }
+        yielding
     }
 
     /// The accelerations of all rates of the tree, from those of the state.
@@ -301,7 +323,7 @@ fn loops_of(system: &mut System, closure: &Closure) -> Loops {
             None => groups.push(vec![place]),
         }
     }
-    Loops::of(&mut system.graph, closure, &groups)
+    Loops::of(system, closure, &groups)
 }
 
 fn links_of(system: &mut System, layout: &Layout, turned: link_kinematics::Turned) -> Vec<LinkKinematics> {

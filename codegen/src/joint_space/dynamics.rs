@@ -6,6 +6,7 @@
 
 use super::embedding::Embedding;
 use super::link_kinematics::{Bias, LinkKinematics};
+use super::loops::RemainingRows;
 use super::lower_triangle::{couple, resistance};
 use crate::derive::dynamics::gyroscopic_torque;
 use crate::derive::joint_coordinate::Load;
@@ -46,7 +47,7 @@ pub struct JointDynamics {
     /// With the places of unknowns.
     armatures: Vec<Armature>,
     /// Rows that the unknowns must meet besides, `J z = γ`.
-    rows: Vec<(Vec<ExprId>, ExprId)>,
+    rows: RemainingRows,
 }
 
 impl JointDynamics {
@@ -58,7 +59,7 @@ impl JointDynamics {
         spins: &[Vec3],
         loads: &[Load],
         (along, armatures): (&[ExprId], &[Armature]),
-        (embedding, rows): (&Embedding, Vec<(Vec<ExprId>, ExprId)>),
+        (embedding, rows): (&Embedding, RemainingRows),
     ) -> Self {
         let gravity = system.numbers(&system.model.gravity);
         let mut along = embedding.projected(&mut system.graph, along);
@@ -134,15 +135,20 @@ impl JointDynamics {
     /// What the unknowns become by the multipliers that meet the remaining rows: `M⁻¹ Jᵀ μ` is added, such that
     /// `J z = γ`.
     fn closed(&self, graph: &mut Graph, tree: &Eliminated, mut found: Vec<ExprId>) -> Vec<ExprId> {
-        let responses: Vec<_> = self.rows.iter().map(|(row, _)| self.response_to(graph, tree, row)).collect();
+        let RemainingRows { rows, yielding } = &self.rows;
+        let responses: Vec<_> = rows.iter().map(|(row, _)| self.response_to(graph, tree, row)).collect();
         let mut matrix = BTreeMap::new();
-        for (k, (row, _)) in self.rows.iter().enumerate() {
+        for (k, (row, _)) in rows.iter().enumerate() {
             for (l, response) in responses[..=k].iter().enumerate() {
                 matrix.insert((k, l), graph.dot_slices(row, response));
             }
         }
+        for (&place, &entry) in yielding {
+            let sum = matrix.entry(place).or_insert(Graph::ZERO);
+            *sum = graph.add(*sum, entry);
+        }
         matrix.retain(|_, entry| *entry != Graph::ZERO);
-        let lacking = self.rows.iter().map(|(row, gamma)| {
+        let lacking = rows.iter().map(|(row, gamma)| {
             let rate = graph.dot_slices(row, &found);
             graph.sub(*gamma, rate)
         });

@@ -52,12 +52,22 @@ pub struct JointForm<'a> {
     pub passes: FinalPasses,
 }
 
+impl JointForm<'_> {
+    /// Whether rows depend on each other: what they yield is too long to be differentiated.
+    fn is_long(&self) -> bool {
+        !self.coordinates.loops.yielding.is_empty()
+    }
+}
+
 /// The columns of a matrix.
 pub type Columns = Vec<Vec<ExprId>>;
 
 impl Jacobian {
     /// `None` if there are too many rates, or if the third derivative of a table's curve would be needed.
     pub fn derive(system: &mut System, form: &JointForm<'_>) -> Option<Self> {
+        if form.is_long() {
+            return None;
+        }
         let layout = &form.coordinates.layout;
         let n_inputs = system.model.inputs.len();
         let state =
@@ -95,6 +105,9 @@ impl Jacobian {
 impl ParameterJacobian {
     /// `None` in the same cases.
     pub fn derive(system: &mut System, form: &JointForm<'_>) -> Option<Self> {
+        if form.is_long() {
+            return None;
+        }
         let variables: Vec<_> = (0..system.model.parameters.len()).map(Symbol::Parameter).collect();
         let candidates = form.candidates(system, &variables)?;
         let graph = &mut system.graph;

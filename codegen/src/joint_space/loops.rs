@@ -7,7 +7,9 @@
 
 use super::closure::Closure;
 use super::embedding::{Embedding, RateMotion};
+use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
+use crate::solve::dependence::{self, Yielding};
 use crate::solve::ldl::Elimination;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,6 +19,16 @@ pub struct Loops {
     single: Vec<Single>,
     /// The rows of all other loops, among those of the closure.
     pub others: Vec<usize>,
+    /// What dependent rows among these yield.
+    pub yielding: Yielding,
+}
+
+/// Rows that unknowns must meet, `J z = γ`, by multipliers.
+#[derive(Clone, Debug)]
+pub struct RemainingRows {
+    pub rows: Vec<(Vec<ExprId>, ExprId)>,
+    /// What rows yield to multipliers that depend on others.
+    pub yielding: Yielding,
 }
 
 /// A loop with a single motion.
@@ -38,14 +50,17 @@ enum Solve {
 
 impl Loops {
     /// `groups` are the rows of each joint.
-    pub fn of(graph: &mut Graph, closure: &Closure, groups: &[Vec<usize>]) -> Self {
+    pub fn of(system: &mut System, closure: &Closure, groups: &[Vec<usize>]) -> Self {
         let rates: Vec<_> = groups.iter().map(|rows| closure.rates_of(rows)).collect();
-        let mut loops = Self::default();
+        let mut loops = Self { yielding: yielding(system, closure), ..Self::default() };
+        let graph = &mut system.graph;
+        let yields = |row: &usize| loops.yielding.contains_key(&(*row, *row));
+        let yielding: Vec<_> = groups.iter().map(|rows| rows.iter().any(yields)).collect();
         for (place, rows) in groups.iter().enumerate() {
             let is_alone =
                 (0..groups.len()).all(|other| other == place || rates[other].is_disjoint(&rates[place]));
             match Single::of(graph, closure, rows, &rates[place]) {
-                Some(single) if is_alone => loops.single.push(single),
+                Some(single) if is_alone && !yielding[place] => loops.single.push(single),
                 _ => loops.others.extend(rows),
             }
         }
@@ -127,6 +142,14 @@ impl Loops {
         distances
     }
 
+    /// By places among the rows of the other loops.
+    pub fn yielding_of_others(&self) -> Yielding {
+        let place = |row: usize| {
+            self.others.iter().position(|&other| other == row).expect("they are met by multipliers")
+        };
+        self.yielding.iter().map(|(&(k, l), &entry)| ((place(k), place(l)), entry)).collect()
+    }
+
     /// `J Jᵀ w = b` for the rows of the other loops.
     fn square(&self, graph: &mut Graph, closure: &Closure, rhs: Vec<ExprId>) -> Elimination {
         let mut square = BTreeMap::new();
@@ -135,9 +158,27 @@ impl Loops {
                 square.insert((k, l), graph.dot_slices(&closure.jacobian[row], &closure.jacobian[other]));
             }
         }
+        for ((k, l), yielding) in self.yielding_of_others() {
+            let entry = square.entry((k, l)).or_insert(Graph::ZERO);
+            *entry = graph.add(*entry, yielding);
+        }
         square.retain(|_, entry| *entry != Graph::ZERO);
         Elimination::new(square, rhs)
     }
+}
+
+/// Of all rows that depend on each other, by their places among those of the closure.
+fn yielding(system: &mut System, closure: &Closure) -> Yielding {
+    let mut all = Yielding::new();
+    for set in system.model.dependent_rows() {
+        let is_own = |place: &usize| set.contains(&closure.rows[*place]);
+        let places: Vec<_> = (0..closure.rows.len()).filter(is_own).collect();
+        let rows = places.iter().map(|&place| (closure.rows[place], closure.jacobian[place].as_slice()));
+        let rows: Vec<_> = rows.collect();
+        let own = dependence::yielding(&mut system.graph, system.model, &rows);
+        all.extend(own.into_iter().map(|((k, l), entry)| ((places[k], places[l]), entry)));
+    }
+    all
 }
 
 impl Single {

@@ -14,6 +14,7 @@ use crate::expr::symbol::Symbol;
 use crate::solve::Solution;
 use crate::solve::articulated_body::{Basis, EliminatedTree, Excitation};
 use crate::solve::cancellation::{self, Trials};
+use crate::solve::dependence::Yielding;
 use crate::solve::gram_schmidt::{self, GramSchmidtTree};
 use crate::solve::loop_closure::{self, CutRotor};
 use crate::solve::motion_subspace::MotionSubspace;
@@ -38,10 +39,12 @@ pub struct ForwardDynamics {
     loop_rows: Vec<usize>,
     /// The armatures that no joint of the trees has.
     cut_rotors: Vec<CutRotor>,
+    /// What dependent rows yield, in symbols that need no expansion.
+    yielding: Yielding,
 }
 
 impl ForwardDynamics {
-    pub fn of(system: &mut System, kinematics: &Kinematics) -> Self {
+    pub fn of(system: &mut System, kinematics: &Kinematics, yielding: Yielding) -> Self {
         let links = system.tree.links.clone();
         let subspaces: Vec<_> =
             links.iter().map(|&link| MotionSubspace::of(system, kinematics, link)).collect();
@@ -69,7 +72,7 @@ impl ForwardDynamics {
             eliminated.push(EliminatedTree::new(system, in_own_frames, Basis::Own));
         }
         let cut_rotors = CutRotor::all(system);
-        Self { subspaces, eliminated, reduced, gram_schmidt, loop_rows, cut_rotors }
+        Self { subspaces, eliminated, reduced, gram_schmidt, loop_rows, cut_rotors, yielding }
     }
 
     /// Solves eq. (17): for the multipliers, and for the accelerations if these are asked for.
@@ -91,7 +94,7 @@ impl ForwardDynamics {
             let excitation = Excitation::by_forces(system, dynamics, subspaces);
             let free = tree.respond(&mut system.graph, &excitation).motions;
             let rows = (&self.loop_rows[..], &kinematics.gamma[..]);
-            let (graph, rotors) = (&mut system.graph, &self.cut_rotors);
+            let (graph, rotors) = (&mut system.graph, (&self.cut_rotors[..], &self.yielding));
             let (motions, multipliers) = loop_closure::close(graph, kinematics, tree, rows, rotors, free);
             listed(&motions).into_iter().chain(multipliers).collect()
         };
@@ -124,7 +127,7 @@ impl ForwardDynamics {
                 kinematics,
                 tree,
                 (&self.loop_rows, &changes),
-                &self.cut_rotors,
+                (&self.cut_rotors, &self.yielding),
                 free,
             );
             listed(&motions)
@@ -245,7 +248,7 @@ mod tests {
         let mut system = System::new(&model);
         let kinematics = Kinematics::derive(&mut system);
         let dynamics = Dynamics::derive(&mut system);
-        let trees = ForwardDynamics::of(&mut system, &kinematics);
+        let trees = ForwardDynamics::of(&mut system, &kinematics, Yielding::new());
         let mut forms = Vec::new();
         for tree in &trees.eliminated {
             let subspaces = tree.joints.iter().map(|joint| &joint.subspace);
@@ -289,7 +292,7 @@ mod tests {
         let model = gyro_model::read("page.toml", &page).expect("a model file without mistakes");
         let mut system = System::new(&model);
         let textbook = Textbook::derive(&mut system);
-        let trees = ForwardDynamics::of(&mut system, &textbook.kinematics);
+        let trees = ForwardDynamics::of(&mut system, &textbook.kinematics, Yielding::new());
         let form = trees.solve(&mut system, &textbook, true).solved;
         let tree = GramSchmidtTree::new(&mut system, trees.subspaces.clone(), Basis::Mixed);
         let excitation = Excitation::by_forces(&mut system, &textbook.dynamics, &tree.subspaces);

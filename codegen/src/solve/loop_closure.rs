@@ -8,6 +8,7 @@ use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::spatial_vector::SpatialVector;
 use crate::solve::articulated_body::{EliminatedTree, Excitation};
+use crate::solve::dependence::Yielding;
 use crate::solve::ldl::Elimination;
 use std::collections::BTreeMap;
 
@@ -46,13 +47,13 @@ impl CutRotor {
 }
 
 /// Corrects the motions of the free tree, so that these rows change as `rates` of all rows say, against the armatures
-/// of joints that close loops; returns the multipliers too.
+/// of joints that close loops, but for what dependent rows yield; returns the multipliers too.
 pub fn close(
     graph: &mut Graph,
     kinematics: &Kinematics,
     tree: &EliminatedTree,
     (rows, rates): (&[usize], &[ExprId]),
-    rotors: &[CutRotor],
+    (rotors, yielding): (&[CutRotor], &Yielding),
     mut motions: Vec<SpatialVector>,
 ) -> (Vec<SpatialVector>, Vec<ExprId>) {
     let mut gradients: Vec<_> = rows.iter().map(|&row| gradient(kinematics, row)).collect();
@@ -72,6 +73,11 @@ pub fn close(
     for k in rows.len()..gradients.len() {
         let entry = matrix.entry((k, k)).or_insert(Graph::ZERO);
         *entry = graph.add(*entry, Graph::ONE);
+    }
+    let place = |row: usize| rows.iter().position(|&other| other == row).expect("they close loops");
+    for (&(k, l), &more) in yielding {
+        let entry = matrix.entry((place(k), place(l))).or_insert(Graph::ZERO);
+        *entry = graph.add(*entry, more);
     }
     matrix.retain(|_, entry| *entry != Graph::ZERO);
     let mut wanted: Vec<_> = rows.iter().map(|&row| rates[row]).collect();

@@ -5,6 +5,7 @@ pub mod articulated_body;
 pub mod axis_bias;
 pub mod cancellation;
 pub mod component;
+pub mod dependence;
 pub mod forward_dynamics;
 pub mod gram_schmidt;
 pub mod ldl;

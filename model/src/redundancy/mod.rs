@@ -11,7 +11,7 @@ use crate::kinematics::{Equation, Kinematics};
 use crate::{AssemblyError, Model, PointAxes, RedundantRow, Row, RowOwner, Start, Support, Tree};
 use axes::Poses;
 use sample::{Samples, samples};
-use select::{Selection, generic, idle, owners, select};
+use select::{Selection, dependencies_move, generic, idle, owners, select};
 use trees::TreeRows;
 
 /// What the rank of the constraint rows says about a mechanism.
@@ -29,11 +29,13 @@ pub struct Analysis {
 }
 
 impl Model {
-    /// Number of velocities that the rows leave free: six for each body with coordinates less [`Model::rows`].
+    /// Number of velocities that the rows leave free: six for each body with coordinates less those of
+    /// [`Model::rows`] that are independent.
     ///
     /// Driven coordinates are not free. It is right once redundant rows are known, see [`analyse`].
     pub fn degrees_of_freedom(&self) -> usize {
-        (6 * self.coordinate_bodies().len()).saturating_sub(self.rows().len())
+        let stay = self.redundant.iter().filter(|row| row.stays).count();
+        (6 * self.coordinate_bodies().len() + stay).saturating_sub(self.rows().len())
     }
 }
 
@@ -68,6 +70,7 @@ pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
     }
     let all = System::new(&kinematics, driven, &scales);
     let (poses, groups) = (around.with(start.clone()), groups(&kinematics, &tree));
+    let is_exact = are_met(&System::new(&kinematics, undriven(&kinematics), &scales), &poses);
     let trees = TreeRows::of(model, &tree, kinematics.rows());
     let mut jacobians: Vec<_> = poses.iter().map(|at| all.jacobian(at)).collect();
     let mut motions: Vec<_> = jacobians.iter().map(|jacobian| trees.motions(jacobian)).collect();
@@ -87,7 +90,7 @@ pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
         trees: &trees,
         groups: &groups,
     };
-    let (redundant, selection) = selected(poses);
+    let (redundant, selection) = selected(poses, is_exact);
     check_drivers(model, &redundant)?;
     check_later(
         &Model { redundant: redundant.clone(), ..model.clone() },
@@ -104,8 +107,19 @@ pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
     Ok(Analysis { redundant, rank, degrees_of_freedom, singular_start })
 }
 
+/// All rows are met if none is off by more than this, lengths in units of the size: half of what corrections leave.
+const EXACT: f64 = 2e-15;
+
+/// Whether all rows can be met at these poses, but for rounding.
+fn are_met(system: &System<'_>, poses: &[Configuration]) -> bool {
+    poses.iter().all(|at| system.residual(&system.project(at)).amax() < EXACT)
+}
+
 /// Rows by rank, point rows along global axes or, of the joints of which this is said, along those of the first body.
-fn selected(mut poses: Poses<'_>) -> (Vec<RedundantRow>, Selection) {
+///
+/// Where all rows can be met they stay if the dependency moves; slips of a model file's last digits are left to
+/// rows that are dropped.
+fn selected(mut poses: Poses<'_>, is_exact: bool) -> (Vec<RedundantRow>, Selection) {
     let mut selection = select(&poses.motions, poses.trees, poses.groups);
     let turning = poses.joints_that_turn(&selection.dropped);
     if !turning.is_empty() {
@@ -121,9 +135,14 @@ fn selected(mut poses: Poses<'_>) -> (Vec<RedundantRow>, Selection) {
     let dropped = selection.dropped.iter().enumerate();
     let shared = dropped.map(|(at, row)| (owners(&states, (at, *row), rows), poses.loads(&states, at)));
     let redundant = selection.dropped.iter().map(|&row| rows[row]).zip(shared);
-    let redundant = redundant
-        .map(|(row, (shared_with, loads))| RedundantRow { row, axes: axes(row), shared_with, loads })
-        .collect();
+    let moves = dependencies_move(&selection, (&poses.motions, poses.trees));
+    let redundant = redundant.zip(moves).map(|((row, (shared_with, loads)), moves)| {
+        let is_joint = |owner: &RowOwner| matches!(owner, RowOwner::Joint(_));
+        let of_joints = is_joint(&row.owner) && shared_with.iter().all(is_joint);
+        let stays = is_exact && moves && of_joints && poses.has_joint_coordinates();
+        RedundantRow { row, axes: axes(row), shared_with, loads, stays }
+    });
+    let redundant = redundant.collect();
     (redundant, selection)
 }
 

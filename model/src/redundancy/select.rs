@@ -128,6 +128,26 @@ pub(super) fn owners(idle: &[DMatrix<f64>], (dropped, own): (usize, usize), rows
     shared
 }
 
+/// Changes of coefficients from pose to pose below this are rounding.
+const STAYS: f64 = 1e-5;
+
+/// For each dropped row whether it is another combination of the kept rows at one pose than at another.
+///
+/// One that is the same everywhere takes nothing from the rank wherever the others keep theirs; of one that changes
+/// other rows may have to take the place.
+pub(super) fn dependencies_move(selection: &Selection, (poses, trees): (&[Motions], &TreeRows)) -> Vec<bool> {
+    let of_trees: Vec<usize> = trees.rows().collect();
+    let others: Vec<usize> = selection.kept.iter().copied().filter(|row| !of_trees.contains(row)).collect();
+    let at = poses.iter().map(|pose| {
+        let unit = combinations(pose, &others, &selection.dropped);
+        let long = |row, column| unit[(row, column)] * pose.ratio(selection.dropped[row], others[column]);
+        DMatrix::from_fn(unit.nrows(), unit.ncols(), long)
+    });
+    let at: Vec<_> = at.collect();
+    let moves = |row: usize| at.iter().any(|pose| (pose.row(row) - at[0].row(row)).amax() > STAYS);
+    (0..selection.dropped.len()).map(|row| !others.is_empty() && moves(row)).collect()
+}
+
 /// The coefficients by which kept rows come nearest to each of the others among the motions of the trees.
 fn combinations(pose: &Motions, kept: &[usize], rows: &[usize]) -> DMatrix<f64> {
     let [kept_rows, rows] =

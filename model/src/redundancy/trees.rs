@@ -22,6 +22,8 @@ struct LinkRows {
 #[derive(Debug)]
 pub(super) struct Motions {
     pub(super) jacobian: DMatrix<f64>,
+    /// The lengths that the rows had.
+    lengths: Vec<f64>,
     /// An orthonormal basis, in columns.
     free: DMatrix<f64>,
     /// Of each link the least velocities of its body by which its rows change as given.
@@ -52,7 +54,7 @@ impl TreeRows {
 
     /// What they leave at a pose, singular poses of the mechanism among them.
     pub(super) fn motions(&self, jacobian: &DMatrix<f64>) -> Motions {
-        let jacobian = with_unit_rows(jacobian);
+        let (jacobian, lengths) = with_unit_rows(jacobian);
         let count = self.0.iter().map(|link| 6 - link.rows.len()).sum();
         let mut all = DMatrix::zeros(jacobian.ncols(), count);
         let (mut least, mut first) = (Vec::new(), 0);
@@ -67,7 +69,7 @@ impl TreeRows {
             least.push(inverse);
         }
         let free = if count > 0 { all.qr().q() } else { all };
-        Motions { jacobian, free, least }
+        Motions { jacobian, lengths, free, least }
     }
 
     /// The coefficients by which the trees' rows add up to each of these vectors, in the order of [`Self::rows`]; the
@@ -103,7 +105,13 @@ impl Motions {
 
     /// The same, rows being made anew.
     pub(super) fn with(&self, jacobian: &DMatrix<f64>) -> Self {
-        Self { jacobian: with_unit_rows(jacobian), free: self.free.clone(), least: self.least.clone() }
+        let (jacobian, lengths) = with_unit_rows(jacobian);
+        Self { jacobian, lengths, free: self.free.clone(), least: self.least.clone() }
+    }
+
+    /// By how much a row was longer than another; none has no length.
+    pub(super) fn ratio(&self, row: usize, other: usize) -> f64 {
+        self.lengths[row] / self.lengths[other]
     }
 }
 
@@ -127,13 +135,13 @@ fn inverse_and_rest(rows: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
 }
 
 /// Rows on zero length stay as they are: nothing that has coordinates is in them.
-fn with_unit_rows(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+fn with_unit_rows(jacobian: &DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
+    let lengths: Vec<f64> = jacobian.row_iter().map(|row| row.norm()).collect();
     let mut unit = jacobian.clone();
-    for mut row in unit.row_iter_mut() {
-        let norm = row.norm();
-        if norm > 0.0 {
-            row /= norm;
+    for (mut row, &length) in unit.row_iter_mut().zip(&lengths) {
+        if length > 0.0 {
+            row /= length;
         }
     }
-    unit
+    (unit, lengths)
 }

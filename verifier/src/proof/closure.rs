@@ -5,6 +5,7 @@
 //! through `to_maximal` and the textbook's rows.
 
 use super::case::Case;
+use super::dependence;
 use super::elimination::Eliminated;
 use super::partition::{dot, turning};
 use super::residuals::differences;
@@ -27,16 +28,26 @@ pub fn loop_closure<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(differences(&case.run("loop_closure", &case.point), &of_closure(layout, &phi)))
 }
 
-/// By Gram–Schmidt: what is left of a row of J is perpendicular to the rows before it.
+/// By Gram–Schmidt: what is left of a row of J is perpendicular to the rows before it. Of dependent rows, which
+/// yield, it is that of `J Jᵀ + Q`.
 pub fn closure_distances<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let layout = case.module.joints.as_ref()?;
     let mut left: Vec<(Vec<Term<'a>>, Term<'a>)> = Vec::new();
-    for mut row in jacobian(case, layout)? {
+    let (context, jacobian) = (case.point.context, jacobian(case, layout)?);
+    let (yielding, n) = (dependence::yielding(case, layout, &jacobian)?, layout.n_rates);
+    // Behind a row of J, the combination of rows that it is.
+    let product = |a: &[Term<'a>], b: &[Term<'a>]| {
+        let (combination, other) = (&a[n..], &b[n..]);
+        let yielded = yielding.iter().zip(combination).map(|(row, part)| part.mul(&dot(row, other)));
+        yielded.fold(dot(&a[..n], &b[..n]), |sum, part| sum.add(&part))
+    };
+    for (k, mut row) in jacobian.into_iter().enumerate() {
+        row.extend((0..yielding.len()).map(|l| Term::integer(context, i64::from(k == l))));
         for (other, square) in &left {
-            let along = dot(&row, other).div(square)?;
+            let along = product(&row, other).div(square)?;
             row.iter_mut().zip(other).for_each(|(x, other)| *x = x.sub(&along.mul(other)));
         }
-        let square = dot(&row, &row);
+        let square = product(&row, &row);
         left.push((row, square));
     }
     let squares: Vec<_> = left.into_iter().map(|(_, square)| square).collect();
@@ -56,8 +67,42 @@ pub fn close_positions<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let start = case.maximal(&case.joints);
     let phi = case.textbook(&start)?.phi()?;
     let moved = rates_of_closure(case, layout, of_x)?;
-    residuals.extend(moved.iter().zip(of_closure(layout, &phi)).map(|(moved, phi)| moved.add(&phi)));
+    let left: Vec<_> =
+        moved.iter().zip(of_closure(layout, &phi)).map(|(moved, phi)| moved.add(&phi)).collect();
+    let along = |rates: &[Term<'a>]| coordinates_along(case, layout, rates);
+    residuals.extend(unless_yielded(case, layout, (of_x, along), left)?);
     Some(residuals)
+}
+
+/// What is left of the rows when they change by `J δ`; of dependent rows, which yield `Q w`, that δ is `Jᵀ w` for a
+/// w. The change is that of x, or of u, and `along` says what rates change there.
+fn unless_yielded<'a>(
+    case: &Case<'a>,
+    layout: &JointLayout,
+    (change, along): (&[Term<'a>], impl Fn(&[Term<'a>]) -> Option<Vec<Term<'a>>>),
+    left: Vec<Term<'a>>,
+) -> Option<Vec<Term<'a>>> {
+    if case.model.dependent_rows().is_empty() {
+        return Some(left);
+    }
+    let (context, jacobian) = (case.point.context, jacobian(case, layout)?);
+    let yielding = dependence::yielding(case, layout, &jacobian)?;
+    let moved = jacobian.iter().map(|row| along(row)).collect::<Option<Vec<_>>>()?;
+    let matrix = dependence::beside(&moved, &yielding, &Term::one(context));
+    let eliminated = Eliminated::of(case, &matrix)?;
+    let vector: Vec<_> = change.iter().copied().chain(left.iter().map(Field::neg)).collect();
+    Some([eliminated.split(context, &vector).0, eliminated.independence(context)].concat())
+}
+
+/// T times some rates.
+fn coordinates_along<'a>(case: &Case<'a>, layout: &JointLayout, rates: &[Term<'a>]) -> Option<Vec<Term<'a>>> {
+    let mut sum = vec![Term::zero(case.point.context); layout.n_coordinates];
+    for (rate, value) in rates.iter().enumerate() {
+        let place = layout.places.iter().rfind(|place| place.u <= rate)?;
+        let column = directions(case, layout, place, rate - place.u)?;
+        sum.iter_mut().zip(column).for_each(|(sum, entry)| *sum = sum.add(&entry.mul(value)));
+    }
+    Some(sum)
 }
 
 /// Turn references are set to the angles that the state has before.
@@ -78,7 +123,18 @@ pub fn close_velocities<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let (x, rest) = (0..layout.n_coordinates, layout.n_motion()..layout.n_state());
     let mut residuals = differences(&closed[x.clone()], &case.joints[x]);
     residuals.extend(differences(&closed[rest.clone()], &case.joints[rest]));
-    residuals.extend(of_closure(layout, &case.textbook(&case.maximal(&closed))?.velocity_residual()?));
+    let left = of_closure(layout, &case.textbook(&case.maximal(&closed))?.velocity_residual()?);
+    let changes = differences(&closed, &case.joints);
+    let change = &changes[layout.n_coordinates..layout.n_motion()];
+    residuals.extend(unless_yielded(
+        case,
+        layout,
+        (change, |rates: &[Term<'a>]| Some(rates.to_vec())),
+        left,
+    )?);
+    if !case.model.dependent_rows().is_empty() {
+        return Some(residuals);
+    }
     let kept = kept_rates(case, layout)?;
     residuals.extend(differences(&case.closed("close_velocities", &kept), &kept));
     Some(residuals)

@@ -1,15 +1,17 @@
 //! What a mechanism's functions in joint coordinates must satisfy.
 //!
-//! `y = to_maximal(x)` satisfies all rows but those that close loops, and the joint coordinates that the textbook reads
-//! off it are those that it was made of. So its velocities v depend on u through a matrix `B = ∂v/∂u` of full column
-//! rank, whose columns are all that these velocity rows leave free. Then the accelerations of eq. (17) are the v̇ that
-//! satisfy the second derivative of all rows, `Φ_r s̈ + Φ_π' ẇ' = γ`, and leave to the constraints only what does no
-//! work on any free motion that keeps loops closed: with J of [`closure`], whose rows must be independent,
-//! `Bᵀ (M v̇ − f) = −Jᵀ λ` for some λ, the multipliers of the rows that close loops. Of trees, which have no such rows,
-//! nothing is left and multipliers are not needed. B and v̇ are derivatives of `to_maximal` by dual numbers.
+//! `y = to_maximal(x)` satisfies all rows but those that close loops, and the joint coordinates that the textbook
+//! reads off it are those that it was made of. So its velocities v depend on u through a matrix `B = ∂v/∂u` of full
+//! column rank, whose columns are all that these velocity rows leave free. Then the accelerations of eq. (17) are
+//! the v̇ that satisfy the second derivative of all rows, `Φ_r s̈ + Φ_π' ẇ' = γ`, and leave to the constraints only
+//! what does no work on any free motion that keeps loops closed: with J of [`closure`], whose rows must be
+//! independent or yield ([`dependence`]), `Bᵀ (M v̇ − f) = −Jᵀ λ` for some λ, the multipliers of the rows that
+//! close loops. Of trees, which have no such rows, nothing is left and multipliers are not needed. B and v̇ are
+//! derivatives of `to_maximal` by dual numbers.
 
 use super::case::{Arguments, Case};
 use super::closure::{self, of_closure};
+use super::dependence;
 use super::elimination::Eliminated;
 use super::partition::{dot, turning};
 use super::residuals::{differences, position_rates};
@@ -67,11 +69,19 @@ impl<'c, 'a> Motion<'c, 'a> {
         let (case, context) = (self.case, self.case.point.context);
         let imbalance = case.textbook(&self.maximal)?.imbalance(self.accelerations())?;
         let along = |column: Vec<Term<'a>>| dot(&column, &imbalance);
-        let taken: Vec<_> = free_motions(case)?.into_iter().map(along).collect();
+        let mut taken: Vec<_> = free_motions(case)?.into_iter().map(along).collect();
         if self.layout.closure_rows.is_empty() {
             return Some([taken, Vec::new()]);
         }
-        let Some(jacobian) = Eliminated::of(case, &closure::jacobian(case, self.layout)?) else {
+        let mut jacobian = closure::jacobian(case, self.layout)?;
+        let yielding = dependence::yielding(case, self.layout, &jacobian)?;
+        if !yielding.is_empty() {
+            // `J u̇ − γ = Q λ` beside it.
+            jacobian = dependence::beside(&jacobian, &yielding, &dependence::lightness(case));
+            let missed = case.textbook(&self.maximal)?.residual_of_rows(self.accelerations())?;
+            taken.extend(of_closure(self.layout, &missed).iter().map(Field::neg));
+        }
+        let Some(jacobian) = Eliminated::of(case, &jacobian) else {
             return Some([
                 vec![Term::one(context)],
                 vec![Term::zero(context); self.layout.closure_rows.len()],
@@ -233,12 +243,16 @@ pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(residuals)
 }
 
-/// `Φ_r s̈ + Φ_π' ẇ' = γ` and `Bᵀ (M v̇ − f) = −Jᵀ λ`. (That rows and free motions make up the whole is part of the
-/// layout.)
+/// `Φ_r s̈ + Φ_π' ẇ' = γ`, but for what dependent rows yield, and `Bᵀ (M v̇ − f) = −Jᵀ λ`. (That rows and free
+/// motions make up the whole is part of the layout.)
 pub fn accelerations<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let motion = Motion::new(case)?;
     let textbook = case.textbook(&motion.maximal)?;
     let mut residuals = textbook.residual_of_rows(motion.accelerations())?;
+    if !case.model.dependent_rows().is_empty() {
+        let mut row = 0..;
+        residuals.retain(|_| !motion.layout.closure_rows.contains(&row.next().expect("endless")));
+    }
     let [balance, _] = motion.balance()?;
     residuals.extend(balance);
     Some(residuals)

@@ -135,7 +135,7 @@ impl<'m> Textbook<'m> {
 /// The rows, owner after owner.
 fn blocks(model: &Model) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
-    let dropped: Vec<_> = model.redundant.iter().map(|redundant| redundant.row).collect();
+    let dropped: Vec<_> = model.dropped().map(|redundant| redundant.row).collect();
     for row in model.all_rows() {
         if blocks.last().is_none_or(|last| last.owner != row.owner) {
             let start = blocks.last().map_or(0, |last| last.rows.end);
