@@ -208,8 +208,7 @@ impl System<'_> {
             model.joints[joint].start = JointStartSpec {
                 position: vec![Some(angle)],
                 rate: Some(vec![rate]),
-                orientation: None,
-                is_rough: false,
+                ..JointStartSpec::default()
             };
         }
         for body in &mut model.bodies {

@@ -1,6 +1,6 @@
 //! The plots of a run: joints, outputs, residuals, energy.
 
-mod axis;
+pub(crate) mod axis;
 mod decimate;
 mod draw;
 

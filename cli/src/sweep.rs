@@ -19,7 +19,7 @@ use crate::remarks::say;
 use crate::words::{count, number};
 use crate::write::{Known, digest, write};
 use crate::{files, programs, remarks};
-use gyro_runner::{duration_words, protocol};
+use gyro_runner::{Settings, duration_words, protocol};
 use gyro_sweep::child::Job;
 use gyro_sweep::record::{self, Block};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -221,10 +221,17 @@ impl Way {
 
 fn job(loaded: &Loaded) -> Job {
     let Loaded { study, scene, .. } = loaded;
+    // Samples that nothing is kept of take as long as the rest of a run. Under error control none changes a step.
+    let is_read_at_its_end = study.keep.reads_the_end_alone()
+        && scene.approach.tolerance.is_some()
+        && scene.page.contacts.is_empty()
+        && scene.page.lines().is_empty()
+        && Way::of(loaded) == Way::Whole;
+    let sample_every = if is_read_at_its_end { scene.settings.t_end } else { scene.settings.sample_every };
     Job {
         plan: study.plan.clone(),
         keep: study.keep.clone(),
-        settings: scene.settings,
+        settings: Settings { sample_every, ..scene.settings },
         approach: scene.approach,
         parameters: scene.parameters(),
         start: scene.start.clone(),

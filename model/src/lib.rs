@@ -259,6 +259,9 @@ pub struct JointStartSpec {
     pub orientation: Option<[Number; 4]>,
     /// Whether the assembly may change the coordinates given here: they are guesses.
     pub is_rough: bool,
+    /// For each scalar coordinate its value and its rate where they are set from outside: the assembly keeps both,
+    /// whatever the model file says of them.
+    pub set: Vec<[Option<Number>; 2]>,
 }
 
 /// How a run is to be made, all times in seconds. Of what the model file does not say there is nothing here: that is

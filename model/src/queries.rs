@@ -1,8 +1,9 @@
 //! What can be asked of a model: units, rows, sizes, and the model with other parameters.
 
+use crate::redundancy::analyse_with_start;
 use crate::{
     CoordinateKind, CoordinateUse, Force, ForceKind, JointCoordinate, JointKind, Model, Number, Parameter,
-    PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Support, Tree, analyse, to_f64,
+    PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start, Support, Tree, to_f64,
 };
 use std::ops::Range;
 
@@ -334,14 +335,16 @@ impl Model {
             || self.forces.iter().any(does_work)
     }
 
-    /// The rows that are dropped shape the formulas: other parameters must leave them as they are.
-    fn keeps_redundant_rows(&self) -> Result<(), String> {
-        let found = analyse(self).map_err(|error| error.to_string())?;
+    /// The rows that are dropped shape the formulas: other parameters must leave them as they are. The start is that
+    /// of [`Model::assemble`].
+    fn keeps_redundant_rows(&self) -> Result<Start, String> {
+        let (found, start) = analyse_with_start(self).map_err(|error| error.to_string())?;
         let rows = |redundant: &[RedundantRow]| {
             redundant.iter().map(|r| (r.row, r.axes, r.stays)).collect::<Vec<_>>()
         };
         if rows(&found.redundant) == rows(&self.redundant) {
-            return Ok(());
+            let is_same = self.redundant.iter().all(|dropped| dropped.axes == PointAxes::Global);
+            return if is_same { Ok(start) } else { self.assemble().map_err(|error| error.to_string()) };
         }
         let (now, before) = (found.redundant.len(), self.redundant.len());
         Err(format!(
@@ -368,7 +371,21 @@ impl Model {
     /// The message names the unknown parameter and the nearest one that exists, or what the new value makes unphysical,
     /// or says that a mechanism with loops cannot be assembled or that other rows have become redundant.
     pub fn with_parameters(&self, settings: &[(String, Rational)]) -> Result<Self, String> {
+        self.with_parameters_and_start(settings).map(|(model, _)| model)
+    }
+
+    /// The same with where it starts, which has to be assembled to know: nothing where no parameter is given.
+    ///
+    /// # Errors
+    /// As [`Self::with_parameters`].
+    pub fn with_parameters_and_start(
+        &self,
+        settings: &[(String, Rational)],
+    ) -> Result<(Self, Option<Start>), String> {
         let mut model = self.clone();
+        if settings.is_empty() {
+            return Ok((model, None));
+        }
         for (name, value) in settings {
             let Some(parameter) = model.parameters.iter_mut().find(|p| p.name == *name) else {
                 return Err(crate::parse::not_settable(self, name));
@@ -378,6 +395,6 @@ impl Model {
         if let Some(problem) = crate::validate::physical(&model) {
             return Err(problem);
         }
-        model.keeps_redundant_rows().map(|()| model)
+        model.keeps_redundant_rows().map(|start| (model, Some(start)))
     }
 }

@@ -53,6 +53,8 @@ pub struct Unit {
     /// Where their scenarios start, or why they cannot; empty where all start alike.
     #[nserde(proxy = "Starts")]
     pub starts: Vec<Result<Start, String>>,
+    /// How far each of these has been moved: [`Keep::moved`].
+    pub moved: Vec<Vec<f64>>,
     /// For sensitivities the derivatives of each of these starts.
     pub slopes: Vec<StartSlopes>,
 }
@@ -127,21 +129,41 @@ impl Job {
     }
 }
 
+/// Where some scenarios start: for each of them one, or nothing where all start alike.
+#[derive(Clone, Copy)]
+struct Outsets<'u> {
+    starts: &'u [Result<Start, String>],
+    moved: &'u [Vec<f64>],
+    slopes: &'u [StartSlopes],
+}
+
+impl Outsets<'_> {
+    /// Takes the first ones away.
+    fn take(&mut self, count: usize) -> Self {
+        fn first<'u, T>(of: &mut &'u [T], count: usize) -> &'u [T] {
+            let (own, rest) = of.split_at(count.min(of.len()));
+            *of = rest;
+            own
+        }
+        Self {
+            starts: first(&mut self.starts, count),
+            moved: first(&mut self.moved, count),
+            slopes: first(&mut self.slopes, count),
+        }
+    }
+}
+
 /// What runs scenarios one after the other.
 trait Runs {
-    /// Runs scenarios that follow each other and appends what is kept of them; `starts` and `slopes` have one for each
-    /// or are empty.
-    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], slopes: &[StartSlopes]);
+    /// Runs scenarios that follow each other and appends what is kept of them.
+    fn run(&mut self, block: &mut Block, from: Outsets<'_>);
 
     /// Runs the blocks of a unit and tells of them in their order.
     fn run_unit(&mut self, blocks: Blocks<'_>, unit: &Unit, tell: &mut Tell<'_>) -> io::Result<()> {
-        let (mut starts, mut slopes) = (&unit.starts[..], &unit.slopes[..]);
+        let mut rest = Outsets { starts: &unit.starts, moved: &unit.moved, slopes: &unit.slopes };
         for mut block in blocks {
-            let (own, rest) = starts.split_at((block.count as usize).min(starts.len()));
-            starts = rest;
-            let (own_slopes, rest) = slopes.split_at((block.count as usize).min(slopes.len()));
-            slopes = rest;
-            self.run(&mut block, own, own_slopes);
+            let own = rest.take(block.count as usize);
+            self.run(&mut block, own);
             tell(block)?;
         }
         Ok(())

@@ -90,6 +90,8 @@ pub struct Keep {
     pub passages: Vec<Passage>,
     /// Whether the estimated error is a number of each scenario, in parts of the motion.
     pub estimate: bool,
+    /// Joints and their coordinates of which it is kept how far the assembly of the start has moved them.
+    pub moved: Vec<(usize, usize)>,
     /// Those of which all samples are kept.
     pub series: Vec<usize>,
     /// Targets of the plan by which last values, extremes, passages and the series in `sloped` are differentiated.
@@ -101,12 +103,22 @@ pub struct Keep {
 impl Keep {
     /// How many numbers are kept of a scenario besides series.
     pub fn numbers(&self) -> usize {
-        self.finals.len() + 2 * self.extremes.len() + self.passages.len() + usize::from(self.estimate)
+        self.sloped_numbers() + usize::from(self.estimate) + self.moved.len()
+    }
+
+    /// How many of them are differentiated where any are: they come first.
+    pub fn sloped_numbers(&self) -> usize {
+        self.finals.len() + 2 * self.extremes.len() + self.passages.len()
+    }
+
+    /// Whether of samples before the last one nothing is kept.
+    pub fn reads_the_end_alone(&self) -> bool {
+        self.extremes.is_empty() && self.passages.is_empty() && self.series.is_empty() && !self.estimate
     }
 
     /// How many derivatives are kept of a scenario besides those of series.
     pub fn slopes(&self) -> usize {
-        (self.numbers() - usize::from(self.estimate)) * self.by.len()
+        self.sloped_numbers() * self.by.len()
     }
 
     /// How many derivatives of series are kept of a sample.
@@ -149,6 +161,8 @@ pub struct Keeper<'a> {
     series: Vec<f64>,
     /// The estimated error.
     pub estimate: f64,
+    /// How far the assembly of the start has moved coordinates.
+    pub moved: Vec<f64>,
 }
 
 impl<'a> Keeper<'a> {
@@ -164,6 +178,7 @@ impl<'a> Keeper<'a> {
             passages: vec![f64::NAN; keep.passages.len()],
             series: Vec::with_capacity(keep.series.len() * samples),
             estimate: f64::NAN,
+            moved: Vec::new(),
         }
     }
 
@@ -211,7 +226,7 @@ impl<'a> Keeper<'a> {
         std::mem::swap(&mut self.last, &mut self.now);
     }
 
-    /// Appends what is kept: final values, extremes, passages, the estimate, series. Of a scenario that failed there is
+    /// Appends what is kept: final values, extremes, passages, the estimate, moves, series. Of a scenario that failed there is
     /// its series up to there and nothing else.
     pub fn finish(&mut self, is_complete: bool, numbers: &mut Vec<f64>) {
         let start = numbers.len();
@@ -220,6 +235,7 @@ impl<'a> Keeper<'a> {
             numbers.extend(self.extremes.iter().flatten());
             numbers.extend(&self.passages);
             numbers.extend(self.keep.estimate.then_some(self.estimate));
+            numbers.extend(&self.moved);
         }
         numbers.resize(start + self.keep.numbers(), f64::NAN);
         numbers.extend(&self.series);

@@ -57,6 +57,10 @@ pub struct Vocabulary {
     pub setters: Vec<Setter>,
     /// Starts, named as the columns of results: `alpha`, `alpha rate`.
     pub starts: Vec<Named<Target>>,
+    /// Starts that are as a driver has them, and the drivers' names.
+    pub driven: Vec<(String, String)>,
+    /// What the model file gives of starts and lets the assembly move: joints and their coordinates.
+    pub rough: Vec<Named<(usize, usize)>>,
     /// What can be kept.
     pub columns: Vec<Named<Quantity>>,
 }
@@ -186,6 +190,7 @@ fn page<F: Files>(
     };
     let mut kept = kept;
     kept.sensitivities(reader, &whole, (&varied.targets, &varied.names), &run, &vocabulary);
+    kept.moves(&varied.targets, vocabulary.rough);
     let plan =
         Plan { seed, sampling, targets: varied.targets, axes: varied.axes, draws: varied.draws, repeats };
     check(reader, &whole, &plan, block);

@@ -3,8 +3,10 @@
 use super::loaded::Loaded;
 use super::starts;
 use crate::failure::Failure;
+use crate::scene::start;
 use crate::simulate::simulate_scene;
 use crate::words::number;
+use gyro_runner::Start;
 use gyro_sweep::Source;
 use std::path::Path;
 
@@ -23,8 +25,8 @@ pub(super) fn only(loaded: &Loaded, k: u64, folder: &Path) -> Result<(), Failure
     crate::remarks::say(&format!("scenario {k}: {}\n", shown.join(", ")))?;
     let wrong = |words: String| Failure::Run(format!("scenario {k}: {words}"));
     let mut scene = loaded.scene.clone();
-    scene.model = starts::model(&scene.page, &plan.targets, &values).map_err(wrong)?;
-    scene.start = starts::assembled(&scene.page, &plan.targets, &values).map_err(wrong)?;
-    scene.start.inputs = plan.inputs(&values);
+    let (model, assembled) = starts::assembled(&scene.page, &plan.targets, &values).map_err(wrong)?;
+    scene.start = Start { inputs: plan.inputs(&values), watches: Vec::new(), ..start(&model, &assembled) };
+    (scene.model, scene.moved) = (model, assembled.moved);
     simulate_scene(scene, &folder.join(format!("scenario-{k}")))
 }

@@ -2,6 +2,7 @@
 //!
 //! The blocks are read from their file, one after the other: memory does not grow with their number.
 
+mod cloud;
 mod figures;
 mod gathered;
 mod linear;
@@ -9,6 +10,7 @@ mod page;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod spread;
+mod statistics;
 mod tables;
 
 use super::loaded::Loaded;

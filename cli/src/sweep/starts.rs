@@ -5,47 +5,48 @@
 //! joint coordinates: then all scenarios have one, save for the joints' own starts that vary.
 
 use crate::scene::{Scene, start};
-use gyro_model::{Attachment, Link, Model, Number, Rational, Tree};
+use gyro_model::{Attachment, JointCoordinate, Link, Model, Number, Rational, Tree};
 use gyro_runner::{Coordinates, Integrator, Start};
 use gyro_sweep::study::Study;
 use gyro_sweep::{Draw, Plan, Quantity, Target};
 
-/// The model of a scenario with these values.
+/// The model of a scenario with these values, and where it starts.
 ///
 /// # Errors
-/// What they make unphysical.
-pub(super) fn model(page: &Model, targets: &[Target], values: &[f64]) -> Result<Model, String> {
+/// What they make unphysical, or why it cannot start.
+pub(super) fn assembled(
+    page: &Model,
+    targets: &[Target],
+    values: &[f64],
+) -> Result<(Model, gyro_model::Start), String> {
     let exact = |value: f64| Rational::from_float(value).ok_or_else(|| format!("{value} is not finite"));
-    let mut settings = Vec::new();
-    for (target, value) in targets.iter().zip(values) {
-        match target {
-            Target::Parameter(index) => settings.push((page.parameters[*index].name.clone(), exact(*value)?)),
-            Target::Input(index) => page.check_input(*index, &exact(*value)?)?,
-            _ => {}
-        }
-    }
-    let mut model = page.with_parameters(&settings)?;
+    let (mut model, mut settings) = (page.clone(), Vec::new());
     for (target, value) in targets.iter().zip(values) {
         match *target {
-            Target::Start(joint, k) => {
-                let position = &mut model.joints[joint].start.position;
-                position.resize(position.len().max(k + 1), None);
-                position[k] = Some(Number::Exact(exact(*value)?));
-            }
+            Target::Parameter(index) => settings.push((page.parameters[index].name.clone(), exact(*value)?)),
+            Target::Input(index) => page.check_input(index, &exact(*value)?)?,
+            Target::Table(_) => {}
+            Target::Start(joint, k) => set(&mut model, joint, (k, 0), exact(*value)?),
             Target::StartRate(joint, k) => {
                 // What hangs on the joint then has this rate in place of an absolute one of its own.
                 if let Some(body) = hanging(&model, joint) {
                     model.bodies[body].angular_velocity = None;
                 }
-                let joint = &mut model.joints[joint];
-                let n = joint.kind.coordinates().len();
-                let rates = joint.start.rate.get_or_insert_with(|| vec![Number::integer(0); n]);
-                rates[k] = Number::Exact(exact(*value)?);
+                set(&mut model, joint, (k, 1), exact(*value)?);
             }
-            _ => {}
         }
     }
-    Ok(model)
+    let (model, start) = model.with_parameters_and_start(&settings)?;
+    let assemble = || model.assemble().map_err(|error| format!("{error}: {}", error.help()));
+    let start = start.map_or_else(assemble, Ok)?;
+    Ok((model, start))
+}
+
+/// Sets where a joint's coordinate starts, or its rate.
+fn set(model: &mut Model, joint: usize, (coordinate, order): (usize, usize), value: Rational) {
+    let joint = &mut model.joints[joint];
+    joint.start.set.resize(joint.kind.coordinates().len(), [None, None]);
+    joint.start.set[coordinate][order] = Some(Number::Exact(value));
 }
 
 /// The body that hangs on a joint of the tree.
@@ -55,15 +56,22 @@ fn hanging(model: &Model, joint: usize) -> Option<usize> {
     Tree::of(model).links.iter().find(is_it).map(|link| link.body)
 }
 
-/// Where a scenario starts.
+/// Where a scenario starts, and how far some coordinates have been moved there from where the model file has them.
 ///
 /// # Errors
 /// Why it cannot.
-pub(super) fn assembled(page: &Model, targets: &[Target], values: &[f64]) -> Result<Start, String> {
-    let model = model(page, targets, values)?;
-    let assembled = model.assemble().map_err(|error| format!("{error}: {}", error.help()))?;
+pub(super) fn started(
+    page: &Model,
+    (targets, values): (&[Target], &[f64]),
+    moved: &[(usize, usize)],
+) -> Result<(Start, Vec<f64>), String> {
+    let (model, assembled) = assembled(page, targets, values)?;
+    let of = |&(joint, coordinate): &(usize, usize)| {
+        assembled.moved_from_given(&model, JointCoordinate { joint, coordinate })
+    };
     // Nobody hears of events.
-    Ok(Start { watches: Vec::new(), ..start(&model, &assembled) })
+    let start = Start { watches: Vec::new(), ..start(&model, &assembled) };
+    Ok((start, moved.iter().map(of).collect()))
 }
 
 /// How far apart the starts are that derivatives are taken of, in parts of a target's scale. They are differences of
@@ -81,7 +89,7 @@ pub(super) fn slopes(page: &Model, plan: &Plan, by: &[usize], values: &[f64]) ->
         let shifted = |parts: f64| {
             let mut values = values.to_vec();
             values[*target] += parts * APART * plan.scale(*target);
-            let start = assembled(page, &plan.targets, &values)
+            let (start, _) = started(page, (&plan.targets, &values), &[])
                 .map_err(|words| format!("they take a start nearby: {words}"))?;
             Ok::<_, String>([start.positions, start.velocities, start.turn_references].concat())
         };
@@ -160,4 +168,71 @@ fn are_admissible(study: &Study, model: &Model) -> bool {
         Draw::Together { targets, .. } => targets.iter().all(|target| is_fit(*target, f64::INFINITY)),
     });
     on_axes && drawn
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A four-bar linkage on the x axis; the last joint has no start.
+    fn four_bar(crank: &str, rocker: &str) -> Model {
+        let bar =
+            |name: &str| format!("[[body]]\nname = \"{name}\"\nmass = 1\ninertia = [0.01, 0.02, 0.02]\n");
+        let hinge = |name: &str, [first, at]: [&str; 2], [second, on]: [&str; 2], start: &str| {
+            format!(
+                "[[joint]]\nname = \"{name}\"\nkind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\n\
+                 first = {{ body = \"{first}\", point = [{at}, 0, 0] }}\n\
+                 second = {{ body = \"{second}\", point = [{on}, 0, 0] }}\n{start}\n"
+            )
+        };
+        let text = [
+            "format = 1\nname = \"four_bar\"\n[parameters]\nrocker_half = 0.25\n".to_owned(),
+            "[[body]]\nname = \"ground\"\nfixed = true\n".to_owned(),
+            ["crank", "coupler", "rocker"].map(bar).concat(),
+            hinge("a", ["ground", "0"], ["crank", "-0.1"], crank),
+            hinge("b", ["crank", "0.1"], ["coupler", "-0.3"], "angle_deg = -30\nrough = true"),
+            hinge("d", ["ground", "0.6"], ["rocker", "\"-rocker_half\""], rocker),
+            hinge("c", ["coupler", "0.3"], ["rocker", "\"rocker_half\""], ""),
+        ];
+        gyro_model::read("four_bar.toml", &text.concat()).unwrap_or_else(|mistakes| panic!("{mistakes}"))
+    }
+
+    /// The angle of the rocker that closes the loop for an angle of the crank, by the cosine rule.
+    fn rocker(crank: f64) -> f64 {
+        let (x, y) = (0.2 * crank.cos() - 0.6, 0.2 * crank.sin());
+        let far = x.hypot(y);
+        y.atan2(x) - ((far * far + 0.25 - 0.36) / far).acos()
+    }
+
+    /// The study sets where a rough joint starts: it starts there, and other rough joints move.
+    #[test]
+    fn the_start_of_a_rough_joint_is_the_one_that_is_set() {
+        const ROUGH: &str = "angle_deg = 90\nrough = true";
+        let page = four_bar("angle_deg = 60\nrough = true", ROUGH);
+        for value in [1.56, 1.6, 1.7] {
+            let (start, moved) =
+                started(&page, (&[Target::Start(2, 0)], &[value]), &[(0, 0), (1, 0)]).unwrap();
+            assert!((start.angles[2] - value).abs() < 1e-12, "{} of {value}", start.angles[2]);
+            assert!((rocker(start.angles[0]) - value).abs() < 1e-9, "{} of {value}", start.angles[0]);
+            assert!((moved[0] - (start.angles[0] - 60_f64.to_radians())).abs() < 1e-12);
+        }
+        // What the model file holds leaves no other value to the rocker.
+        let page = four_bar("angle_deg = 60", ROUGH);
+        let held = rocker(60_f64.to_radians());
+        let refused = started(&page, (&[Target::Start(2, 0)], &[1.2]), &[]).unwrap_err();
+        assert!(refused.contains("joint `d`") || refused.contains("joint `a`"), "{refused}");
+        assert!(refused.contains("rad"), "{refused}");
+        let (start, _) = started(&page, (&[Target::Start(2, 0)], &[held]), &[]).unwrap();
+        assert!((start.angles[2] - held).abs() < 1e-12);
+    }
+
+    /// The start that comes with other parameters is the one that is assembled anew.
+    #[test]
+    fn a_start_known_already_has_the_bits_of_one_that_is_assembled() {
+        let page = four_bar("angle_deg = 60", "angle_deg = 90\nrough = true");
+        for value in [0.24, 0.25, 0.26] {
+            let (model, start) = assembled(&page, &[Target::Parameter(0)], &[value]).unwrap();
+            assert_eq!(start, model.assemble().unwrap());
+        }
+    }
 }

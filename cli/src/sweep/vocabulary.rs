@@ -1,8 +1,8 @@
 //! What a model has that a study can name: the names are those of the columns of `simulate`.
 
-use crate::columns::{coordinates, outputs};
+use crate::columns::{Shown, coordinates, outputs};
 use crate::scene::observed;
-use gyro_model::{CoordinateKind, Model, to_f64};
+use gyro_model::{CoordinateKind, JointCoordinate, Model, to_f64};
 use gyro_sweep::study::{Named, Setter, SetterKind, Vocabulary};
 use gyro_sweep::{Quantity, Target};
 
@@ -16,6 +16,27 @@ fn setters(model: &Model) -> Vec<Setter> {
     let lines = model.lines().into_iter();
     let lines = lines.map(|(name, lines)| setter(SetterKind::Lines, name, lines.inputs.to_vec()));
     controllers.chain(contacts).chain(lines).collect()
+}
+
+/// What the model file gives of starts and lets the assembly move.
+fn rough(model: &Model) -> Vec<Named<(usize, usize)>> {
+    let shown = coordinates(model);
+    let places = shown
+        .iter()
+        .enumerate()
+        .map(|(index, one)| (one, shown[..index].iter().filter(|before| before.joint == one.joint).count()));
+    let is_rough = |(one, place): &(&Shown, usize)| {
+        let (start, of) =
+            (&model.joints[one.joint].start, JointCoordinate { joint: one.joint, coordinate: *place });
+        let is_given = start.orientation.is_some() || matches!(start.position.get(*place), Some(Some(_)));
+        start.is_rough && is_given && model.drivers.iter().all(|driver| driver.coordinate != of)
+    };
+    let named = |(one, place): (&Shown, usize)| {
+        let unit = if one.is_orientation() { "rad" } else { one.unit() };
+        Named { name: one.name.clone(), unit: unit.to_owned(), of: (one.joint, place) }
+    };
+    let closes = !model.is_placed_by_trees();
+    places.filter(|one| closes && is_rough(one)).map(named).collect()
 }
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -42,9 +63,15 @@ pub(super) fn vocabulary(model: &Model) -> Vocabulary {
         words.keep(rate.clone(), shown.rate_unit(), Quantity::Rate(index));
         let of = model.joints[shown.joint].kind.coordinates();
         let place = of.iter().position(|other: &CoordinateKind| *other == kind).unwrap_or(0);
+        let of = JointCoordinate { joint: shown.joint, coordinate: place };
+        if let Some(driver) = model.drivers.iter().find(|driver| driver.coordinate == of) {
+            words.driven.extend([name.clone(), rate].map(|start| (start, driver.name.clone())));
+            continue;
+        }
         words.start(name.clone(), shown.unit(), Target::Start(shown.joint, place));
         words.start(rate, shown.rate_unit(), Target::StartRate(shown.joint, place));
     }
+    words.rough = rough(model);
     for (index, (name, unit)) in outputs(model).into_iter().enumerate() {
         words.keep(name, if unit.is_empty() { "1" } else { unit }, Quantity::Output(index));
     }

@@ -3,7 +3,6 @@
 use crate::failure::Failure;
 use crate::sweep::starts;
 use gyro_model::Model;
-use gyro_runner::Start;
 use gyro_runner::protocol::write;
 use gyro_sweep::Source;
 use gyro_sweep::child::{Job, StartSlopes, Unit};
@@ -143,8 +142,7 @@ impl Workers<'_> {
         while let Some(places) = take(at_once) {
             let began = Instant::now();
             let blocks: Vec<u64> = places.clone().map(&block).collect();
-            let (starts, slopes) = self.starts(&blocks, &mut source);
-            worker.ask(&Unit { blocks, starts, slopes })?;
+            worker.ask(&self.unit(blocks, &mut source))?;
             let mut first = places.start;
             while first < places.end {
                 let records = worker.hear(first, places.end)?;
@@ -162,29 +160,29 @@ impl Workers<'_> {
         worker.close()
     }
 
-    /// Where the scenarios of these blocks start, unless all start alike; for sensitivities with derivatives.
-    fn starts(
-        &self,
-        blocks: &[u64],
-        source: &mut Source<'_>,
-    ) -> (Vec<Result<Start, String>>, Vec<StartSlopes>) {
-        let Some(model) = self.assembled else { return Default::default() };
-        let (plan, by) = (&self.job.plan, &self.job.keep.by);
-        let scenarios = blocks.iter().flat_map(|block| {
-            let (first, count) = self.job.range(*block);
-            first..first + u64::from(count)
-        });
+    /// These blocks with where their scenarios start, unless all start alike; for sensitivities with derivatives.
+    fn unit(&self, blocks: Vec<u64>, source: &mut Source<'_>) -> Unit {
+        let mut unit = Unit { blocks, ..Unit::default() };
+        let Some(model) = self.assembled else { return unit };
+        let (plan, keep) = (&self.job.plan, &self.job.keep);
+        let ranges = unit.blocks.iter().map(|block| self.job.range(*block));
         let mut values = vec![0.0; plan.targets.len()];
-        let both = scenarios.map(|k| {
+        for k in ranges.flat_map(|(first, count)| first..first + u64::from(count)) {
             source.write(k, &mut values);
-            let start = starts::assembled(model, &plan.targets, &values);
-            let slopes = match &start {
-                Ok(_) => starts::slopes(model, plan, by, &values),
+            let started = starts::started(model, (&plan.targets, &values), &keep.moved);
+            let slopes = match &started {
+                Ok(_) => starts::slopes(model, plan, &keep.by, &values),
                 Err(words) => Err(words.clone()),
             };
-            (start, slopes.map_or_else(StartSlopes::Impossible, StartSlopes::Of))
-        });
-        both.unzip()
+            unit.slopes.push(slopes.map_or_else(StartSlopes::Impossible, StartSlopes::Of));
+            let (start, moved) = match started {
+                Ok((start, moved)) => (Ok(start), moved),
+                Err(words) => (Err(words), Vec::new()),
+            };
+            unit.starts.push(start);
+            unit.moved.push(moved);
+        }
+        unit
     }
 }
 

@@ -81,8 +81,9 @@ fn of_page(model: &Model, joint: usize) -> Guess {
     let joint = &model.joints[joint];
     let start = &joint.start;
     let n = joint.kind.coordinates().len();
-    let given = |k: usize| start.position.get(k).and_then(Option::as_ref);
-    let source = |k: usize| match (given(k), start.is_rough) {
+    let set = |k: usize, order: usize| start.set.get(k).and_then(|set| set[order].as_ref());
+    let given = |k: usize| set(k, 0).or_else(|| start.position.get(k).and_then(Option::as_ref));
+    let source = |k: usize| match (given(k), start.is_rough && set(k, 0).is_none()) {
         (Some(_), false) => Source::Held,
         (Some(_), true) => Source::Guessed,
         (None, _) => Source::Unknown,
@@ -95,7 +96,7 @@ fn of_page(model: &Model, joint: usize) -> Guess {
         orientation: start.orientation.as_ref().and_then(|p| Quaternion::unit(&exact(model, p))),
         is_ball: joint.kind == JointKind::Spherical,
         is_rough: start.is_rough,
-        rate: (0..n_rates).map(|k| rates.get(k).map(|x| model.value(x))).collect(),
+        rate: (0..n_rates).map(|k| set(k, 1).or(rates.get(k)).map(|x| model.value(x))).collect(),
     }
 }
 

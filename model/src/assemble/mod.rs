@@ -20,7 +20,7 @@ pub use tolerance::{START_TOLERANCE, StartTolerances};
 
 pub(crate) use crate::kinematics::cross;
 
-use crate::{Model, RowOwner, Tree, kinematics::Kinematics};
+use crate::{JointCoordinate, Model, Quaternion, RowOwner, Tree, kinematics::Kinematics};
 use guess::guesses;
 use walk::{Walk, roots};
 
@@ -46,6 +46,22 @@ pub struct JointStart {
     pub position: Vec<f64>,
     /// Their rates, rad/s or m/s. Spherical: relative angular velocity in the second body's frame.
     pub rate: Vec<f64>,
+}
+
+impl Start {
+    /// How far a coordinate of a joint starts from where the model file has it, with its sign, rad or m; how far the
+    /// orientation of a spherical joint is turned from it, rad. NaN where the model file does not say.
+    pub fn moved_from_given(&self, model: &Model, of: JointCoordinate) -> f64 {
+        let (given, now) = (&model.joints[of.joint].start, &self.joints[of.joint].position);
+        if let Some(orientation) = &given.orientation {
+            let given = Quaternion::unit(&crate::kinematics::exact(model, orientation));
+            let (Some(given), &[a, b, c, d]) = (given, &now[..]) else { return f64::NAN };
+            let turn = projection::rotation_vector(given.conjugate() * Quaternion([a, b, c, d]));
+            return turn.iter().map(|x| x * x).sum::<f64>().sqrt();
+        }
+        let given = given.position.get(of.coordinate).and_then(Option::as_ref);
+        given.map_or(f64::NAN, |given| now[of.coordinate] - model.value(given))
+    }
 }
 
 /// How far the assembly moved a joint or a body from where the model file placed it or guessed it to be.
@@ -88,6 +104,11 @@ impl Model {
         }
         let start = if self.is_open(&tree) { self.walked(&tree)? } else { closing::assemble(self)? };
         links::check(self, &start).and_then(|()| stops::check(self, &start)).map(|()| start)
+    }
+
+    /// Whether joint coordinates place every body, so that the assembly moves nothing.
+    pub fn is_placed_by_trees(&self) -> bool {
+        self.is_open(&Tree::of(self))
     }
 
     /// The start of open trees.

@@ -20,6 +20,7 @@ pub(super) fn read(
         rate: rate(reader, section, kind),
         orientation: section.get("orientation").and_then(|item| vector(reader, item)),
         is_rough: is_rough.unwrap_or(false),
+        set: Vec::new(),
     }
 }
 

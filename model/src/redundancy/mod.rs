@@ -53,16 +53,22 @@ impl Model {
 /// fixed without it; a mechanism that can neither move nor is driven; driven bodies whose motions contradict redundant
 /// rows later.
 pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
+    analyse_with_start(model).map(|(analysis, _)| analysis)
+}
+
+/// The same, with the start that it begins with.
+pub(crate) fn analyse_with_start(model: &Model) -> Result<(Analysis, Start), AssemblyError> {
     // Point rows are along global axes until it is known that others are better.
     let model = &Model { redundant: Vec::new(), ..model.clone() };
-    let (start, tree) = (model.assemble()?, Tree::of_coordinates(model));
+    let (assembled, tree) = (model.assemble()?, Tree::of_coordinates(model));
     if model.is_open(&tree) {
         let rank = model.all_rows().len();
         let degrees_of_freedom = (6 * model.coordinate_bodies().len()).saturating_sub(rank);
-        return Ok(Analysis { redundant: Vec::new(), rank, degrees_of_freedom, singular_start: false });
+        let analysis = Analysis { redundant: Vec::new(), rank, degrees_of_freedom, singular_start: false };
+        return Ok((analysis, assembled));
     }
     let (kinematics, scales) = (Kinematics::at(model, 0.0), Scales::of(model));
-    let start = configuration(&kinematics, &start);
+    let start = configuration(&kinematics, &assembled);
     let (released, driven) = (undriven(&kinematics), kinematics.equations());
     let around = samples(&System::new(&kinematics, released, &scales), &start);
     if let Samples::Stuck = around {
@@ -104,7 +110,7 @@ pub fn analyse(model: &Model) -> Result<Analysis, AssemblyError> {
         return Err(over_constrained(model, &tree));
     }
     let singular_start = generic.first() != Some(&0);
-    Ok(Analysis { redundant, rank, degrees_of_freedom, singular_start })
+    Ok((Analysis { redundant, rank, degrees_of_freedom, singular_start }, assembled))
 }
 
 /// All rows are met if none is off by more than this, lengths in units of the size: half of what corrections leave.

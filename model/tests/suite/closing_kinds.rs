@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use gyro_model::{Kinematics, Model, Quaternion, Start, Vector, read};
+use gyro_model::{Kinematics, Model, Number, Quaternion, Rational, Start, Vector, read};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -176,3 +176,55 @@ fn check(model: &Model, start: &Start, title: &str) {
         }
     }
 }
+
+/// How far what is set is from where the mechanism closes by itself, rad or m.
+const SET: f64 = 0.03;
+
+/// The part of a rate that the assembly may miss of what is given.
+const RATE_TOLERANCE: f64 = 1e-8;
+
+/// Coordinates and rates of rough joints that are set from outside are those of the start, or there is none.
+#[test]
+fn what_is_set_is_where_the_mechanism_starts() {
+    let mut kept = 0;
+    for (kind, seed) in CLOSERS.iter().flat_map(|kind| (0..CHAINS / 3).map(move |seed| (kind, seed))) {
+        let planted = model(&page(seed, 0.0, "")).assemble().expect("an open chain");
+        let closing = closing(kind, &planted, &mut ChaCha8Rng::seed_from_u64(seed + 2000));
+        let mut model = closed(&page(seed, ROUGH, &closing));
+        let Ok(before) = model.assemble() else { continue };
+        let mut rng = ChaCha8Rng::seed_from_u64(seed + 4000);
+        let joint = rng.random_range(0..4);
+        let n = model.joints[joint].kind.coordinates().len();
+        if n == 0 {
+            continue;
+        }
+        let k = rng.random_range(0..n);
+        let [position, rate] = [
+            before.joints[joint].position[k] + SET * rng.random_range(-1.0..1.0),
+            rng.random_range(-1.0..1.0),
+        ];
+        let number = |x| Some(Number::Exact(Rational::from_float(x).expect("finite")));
+        model.joints[joint].start.set.resize(n, [None, None]);
+        model.joints[joint].start.set[k] = [number(position), number(rate)];
+        let title = format!("{kind}, seed {seed}, joint {joint}");
+        match model.assemble() {
+            Ok(start) => {
+                let found = (start.joints[joint].position[k], start.joints[joint].rate[k]);
+                assert!(
+                    (found.0 - position).abs() <= TOLERANCE,
+                    "{title}: at {}, set to {position}",
+                    found.0
+                );
+                assert!((found.1 - rate).abs() <= RATE_TOLERANCE, "{title}: rate {}, set to {rate}", found.1);
+                check(&model, &start, &title);
+                kept += 1;
+            }
+            // What cannot be kept is named.
+            Err(error) => assert!(!error.to_string().is_empty(), "{title}"),
+        }
+    }
+    assert!(kept >= MOST_CAN_BE_KEPT, "only {kept} starts could be kept");
+}
+
+/// Of 80 settings, less those of joints without coordinates and those that cannot be.
+const MOST_CAN_BE_KEPT: usize = 20;

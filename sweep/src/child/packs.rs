@@ -5,10 +5,10 @@
 mod adaptive;
 
 use super::joint::Layout;
-use super::{Blocks, Common, Job, Runs, StartSlopes, Tell, Unit, note, serve};
+use super::{Blocks, Common, Job, Outsets, Runs, Tell, Unit, note, serve};
 use crate::Keeper;
 use crate::record::Block;
-use gyro_runner::{Approach, Integrator, Schedule, Start, describe_in, scheduled};
+use gyro_runner::{Approach, Integrator, Schedule, describe_in, scheduled};
 use gyro_sim::lanes::{Direct, Lanes, f64x8};
 use gyro_sim::{Dop853, Error, Joint, JointSpace, Scalar, Tsit5};
 use std::io;
@@ -68,7 +68,7 @@ where
     G: Fn(&[f64x8]) -> P,
     C: Fn(&[f64]) -> Result<(), String>,
 {
-    fn run(&mut self, block: &mut Block, _: &[Result<Start, String>], _: &[StartSlopes]) {
+    fn run(&mut self, block: &mut Block, _: Outsets<'_>) {
         let own = std::mem::take(block);
         let tell = &mut |done| {
             *block = done;

@@ -3,7 +3,7 @@
 use super::joint::{Layout, flat, joint_start, write_start};
 use super::variational::{Closing, Number, Part, Parts, Variational};
 use super::watch::Watch;
-use super::{Common, Job, Runs, StartSlopes, note, packs, serve, whole};
+use super::{Common, Job, Outsets, Runs, StartSlopes, note, packs, serve, whole};
 use crate::Keep;
 use crate::plan::Target;
 use crate::record::Block;
@@ -84,9 +84,9 @@ where
     F: Fn(&[f64]) -> M,
     G: Fn(&[Number]) -> D,
 {
-    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], slopes: &[StartSlopes]) {
+    fn run(&mut self, block: &mut Block, from: Outsets<'_>) {
         let keep = &self.common.job.keep;
-        self.inner.run(block, starts, slopes);
+        self.inner.run(block, from);
         let rows = std::mem::take(&mut block.numbers);
         let width = keep.numbers() + keep.series.len() * self.times.len();
         for (row, numbers) in (0..block.count).zip(rows.chunks_exact(width)) {
@@ -96,8 +96,8 @@ where
             let mut is_whole = false;
             if !has_failed {
                 self.common.draw(block.first + u64::from(row));
-                let start = starts.get(row as usize).and_then(|start| start.as_ref().ok());
-                let start = start.zip(slopes.get(row as usize));
+                let start = from.starts.get(row as usize).and_then(|start| start.as_ref().ok());
+                let start = start.zip(from.slopes.get(row as usize));
                 let outcome = catch_unwind(AssertUnwindSafe(|| self.scenario(start)));
                 let panicked = |_| Err("the program panicked: this is a mistake in gyro-sim".to_owned());
                 match outcome.unwrap_or_else(panicked) {

@@ -1,6 +1,6 @@
 //! Scenarios as whole runs, as `simulate` makes them.
 
-use super::{Common, Job, Runs, StartSlopes, note, serve};
+use super::{Common, Job, Outsets, Runs, note, serve};
 use crate::keep::Keeper;
 use crate::record::Block;
 use gyro_runner::motion::MotionBuilder;
@@ -36,11 +36,12 @@ where
     K: MotionBuilder<M>,
     B: Fn(&[f64]) -> (M, K),
 {
-    fn run(&mut self, block: &mut Block, starts: &[Result<Start, String>], _: &[StartSlopes]) {
+    fn run(&mut self, block: &mut Block, from: Outsets<'_>) {
         let common = &mut self.common;
         for row in 0..block.count {
             common.draw(block.first + u64::from(row));
-            let outcome = match starts.get(row as usize) {
+            common.keeper.moved = from.moved.get(row as usize).cloned().unwrap_or_default();
+            let outcome = match from.starts.get(row as usize) {
                 Some(Err(words)) => Err(words.clone()),
                 Some(Ok(start)) => scenario(common, &self.build, start.clone()),
                 None => scenario(common, &self.build, common.job.start.clone()),

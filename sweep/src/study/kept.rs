@@ -70,6 +70,16 @@ impl Kept {
         !self.tracks.is_empty()
     }
 
+    /// Has kept how far assemblies move what they may, save for what varies: that stays where it is set.
+    pub(super) fn moves(&mut self, targets: &[Target], rough: Vec<Named<(usize, usize)>>) {
+        for Named { name, unit, of: (joint, k) } in rough {
+            if !targets.contains(&Target::Start(joint, k)) {
+                self.keep.moved.push((joint, k));
+                self.numbers.push((format!("{name} moved at start"), unit));
+            }
+        }
+    }
+
     /// Has what is kept differentiated by all that varies, if the study says so.
     pub(super) fn sensitivities(
         &mut self,

@@ -22,7 +22,7 @@ impl Files for Bench {
     type Error = String;
 
     fn model(&mut self, path: &str) -> Result<Vocabulary, String> {
-        if !["m.toml", "closed.toml", "touching.toml", "kinked.toml"].contains(&path) {
+        if !["m.toml", "closed.toml", "touching.toml", "kinked.toml", "rough.toml"].contains(&path) {
             return Err(format!("no {path}"));
         }
         let named = |name: &str, of| Named { name: name.to_owned(), unit: "rad".to_owned(), of };
@@ -32,6 +32,12 @@ impl Files for Bench {
             inputs: vec![("motor".to_owned(), 0.0), ("brake".to_owned(), 0.0)],
             setters: setters(path),
             starts: vec![start],
+            driven: vec![("crank".to_owned(), "motor".to_owned())],
+            rough: if path == "rough.toml" {
+                ["hinge", "link"].iter().zip(0..).map(|(name, joint)| rough(name, joint)).collect()
+            } else {
+                Vec::new()
+            },
             columns: vec![
                 named("hinge", Quantity::Position(0)),
                 named("hinge rate", Quantity::Rate(0)),
@@ -48,6 +54,21 @@ impl Files for Bench {
             Err("no such file".to_owned())
         }
     }
+}
+
+fn rough(name: &str, joint: usize) -> Named<(usize, usize)> {
+    Named { name: name.to_owned(), unit: "rad".to_owned(), of: (joint, 0) }
+}
+
+/// What is set stays, so that nothing is to be said of it.
+#[test]
+fn moves_are_kept_of_rough_starts_that_do_not_vary() {
+    let text = format!("{HEAD}{KEEP}vary = [{{ start = \"hinge\", uniform = [0, 1] }}]");
+    let study = study(&text.replace("m.toml", "rough.toml"));
+    assert_eq!(study.keep.moved, [(1, 0)]);
+    let names: Vec<&str> = study.numbers.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["hinge final", "link moved at start"]);
+    assert_eq!((study.keep.numbers(), study.keep.sloped_numbers()), (2, 1));
 }
 
 const HEAD: &str = "format = 1\nmodel = \"m.toml\"\nscenarios = 10\n";
@@ -185,6 +206,11 @@ fn mistakes_name_their_line_and_the_cure() {
         (vary("uniform = [0, 1]") + "\nblock = 100_000", "s.toml:6", "too large"),
         (vary("uniform = [0, 1]") + "\nblock = \n", "s.toml:6", "cannot be read"),
         (format!("{HEAD}{KEEP}vary = [{{ start = \"hinge\", within = 1 }}]"), "s.toml:5", "a start has none"),
+        (
+            format!("{HEAD}{KEEP}vary = [{{ start = \"crank\", uniform = [0, 1] }}]"),
+            "s.toml:5",
+            "the driver `motor` says where this starts",
+        ),
         (format!("{HEAD}{KEEP}vary = [{{ input = \"motor\", tables = \"b\" }}]"), "s.toml:5", "no such file"),
         (format!("{HEAD}vary = []\nkeep = {{ }}"), "s.toml:5", "nothing is kept"),
         (format!("{HEAD}vary = []\n{KEEP}").replace("final", "passages"), "s.toml:5", "an array of tables"),

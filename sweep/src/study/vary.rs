@@ -262,6 +262,12 @@ fn find(
         reader.wrong(span, [&message, "set already", help]);
         return None;
     }
+    if let Some((_, driver)) = vocabulary.driven.iter().find(|(start, _)| key == "start" && start == name) {
+        let message = format!("the driver `{driver}` says where this starts");
+        let help = "vary a parameter that the driver's motion is written with";
+        reader.wrong(span, [&message, "driven", help]);
+        return None;
+    }
     if found.is_none() {
         let known: Vec<&str> = match key {
             "parameter" => vocabulary.parameters.iter().map(|(name, _)| name.as_str()).collect(),

@@ -1,4 +1,4 @@
-//! Figures as SVG: bands of quantiles, scatter matrices, maps over a grid, indices of sensitivity.
+//! Figures as SVG: bands of quantiles, maps over a grid, indices of sensitivity.
 
 use super::column;
 use gyro_sweep::{IndicesOf, QUANTILES};
@@ -14,9 +14,6 @@ type Panel<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Okabe and Ito's blue and vermillion.
 const BLUE: RGBColor = RGBColor(0, 114, 178);
 const VERMILLION: RGBColor = RGBColor(213, 94, 0);
-
-/// Names on either side of a scatter matrix, at most.
-const SIDE: usize = 7;
 
 fn drawn(size: (u32, u32), draw: impl FnOnce(&Panel<'_>) -> Result<(), Box<dyn Error>>) -> Drawn {
     let mut text = String::new();
@@ -85,46 +82,6 @@ fn band(
         chart.draw_series(std::iter::once(Polygon::new(outline, BLUE.mix(0.25))))?;
     }
     chart.draw_series(std::iter::once(PathElement::new(points(2), BLUE.stroke_width(2))))?;
-    Ok(())
-}
-
-/// Some scenarios as points.
-pub(super) struct Points<'a> {
-    pub(super) names: &'a [(String, String)],
-    /// A number for each name.
-    pub(super) rows: &'a [Vec<f64>],
-}
-
-/// Each against each; of many names the first and the last.
-pub(super) fn scatter(points: &Points<'_>) -> Drawn {
-    let n = points.names.len();
-    let shown: Vec<usize> =
-        if n <= SIDE { (0..n).collect() } else { (0..SIDE - 3).chain(n - 3..n).collect() };
-    let side = 150 * u32::try_from(shown.len()).unwrap_or(1) + 30;
-    drawn((side, side), |area| {
-        let panels = area.split_evenly((shown.len(), shown.len()));
-        for (place, panel) in panels.iter().enumerate() {
-            let [row, column] = [shown[place / shown.len()], shown[place % shown.len()]];
-            cell(panel, points, [column, row])?;
-        }
-        Ok(())
-    })
-}
-
-fn cell(panel: &Panel<'_>, points: &Points<'_>, [x, y]: [usize; 2]) -> Result<(), Box<dyn Error>> {
-    let of = |k: usize| points.rows.iter().map(move |row| row[k]);
-    let name = if x == y { column(&points.names[x]) } else { String::new() };
-    let mut chart = ChartBuilder::on(panel);
-    let mut chart = chart
-        .margin(4)
-        .caption(name, ("sans-serif", 11))
-        .build_cartesian_2d(range(of(x), 0.05), range(of(y), 0.05))?;
-    chart.configure_mesh().disable_mesh().draw()?;
-    if x == y {
-        return Ok(());
-    }
-    let pairs = of(x).zip(of(y)).filter(|(x, y)| x.is_finite() && y.is_finite());
-    chart.draw_series(pairs.map(|point| Circle::new(point, 1, BLUE.mix(0.5).filled())))?;
     Ok(())
 }
 

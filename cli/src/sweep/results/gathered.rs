@@ -1,15 +1,18 @@
 //! What is gathered of all scenarios in one pass, in memory that their number does not change.
 
 use super::super::loaded::Loaded;
-use super::figures::{self, Map, Points};
+use super::cloud::{self, Column};
+use super::figures::{self, Map};
 use super::linear::Linear;
 use crate::words::{count, number, table};
 use gyro_sweep::{Indices, IndicesOf, Sampling};
 use std::collections::BTreeMap;
 use std::error::Error;
 
+/// Scenarios that statistics are of, at most: of more every second, third and so on.
+const SAMPLE: u64 = 10_000;
 /// Points of a plot, at most.
-const POINTS: u64 = 300;
+const POINTS: usize = 300;
 /// Points of a map, at most.
 const CELLS: u64 = 250_000;
 /// Kinds of error that are told apart.
@@ -22,9 +25,10 @@ pub(super) struct Gathered {
     failed: u64,
     /// How often each error has come, numbers left out of its words.
     pub(super) errors: BTreeMap<String, u64>,
-    /// Every how many scenarios one is a point.
-    stride: u64,
-    points: Vec<Vec<f64>>,
+    /// Every how many scenarios one is in the sample.
+    pub(super) stride: u64,
+    /// What varies and what is kept of these.
+    sample: Vec<Vec<f64>>,
     indices: Option<Indices>,
     /// Of each point of a grid of two axes its kept numbers.
     cells: Option<Vec<Vec<f64>>>,
@@ -45,8 +49,8 @@ impl Gathered {
             scenarios: 0,
             failed: 0,
             errors: BTreeMap::new(),
-            stride: plan.scenarios().div_ceil(POINTS),
-            points: Vec::new(),
+            stride: plan.scenarios().div_ceil(SAMPLE).max(1),
+            sample: Vec::new(),
             indices: is_saltelli.then(|| Indices::new(study.numbers.len(), plan.draws.len())),
             cells: is_map.then(Vec::new),
             extremes: vec![[f64::INFINITY, f64::NEG_INFINITY]; study.numbers.len()],
@@ -68,7 +72,7 @@ impl Gathered {
             }
         }
         if k.is_multiple_of(self.stride) {
-            self.points.push([values, numbers].concat());
+            self.sample.push([values, numbers].concat());
         }
         if let Some(indices) = &mut self.indices {
             indices.add(numbers);
@@ -101,10 +105,23 @@ impl Gathered {
             drawn.push(("indices", figures::bars(&draws(loaded), &study.numbers, &indices)?));
         }
         if !study.numbers.is_empty() && self.cells.is_none() && !study.targets.is_empty() {
-            let names: Vec<_> = study.targets.iter().chain(&study.numbers).cloned().collect();
-            drawn.push(("scatter", figures::scatter(&Points { names: &names, rows: &self.points })?));
+            let [targets, numbers] = self.columns(loaded, self.sample.len().div_ceil(POINTS).max(1));
+            drawn.push(("scatter", cloud::scatter(&targets, &numbers)));
         }
         Ok(drawn)
+    }
+
+    /// What varies and what is kept, of every so many scenarios of the sample.
+    pub(super) fn columns<'a>(&self, loaded: &'a Loaded, every: usize) -> [Vec<Column<'a>>; 2] {
+        let of = |names: &'a [(String, String)], first: usize| {
+            let column = |(k, name)| Column {
+                name,
+                values: self.sample.iter().step_by(every).map(|row| row[first + k]).collect(),
+            };
+            names.iter().enumerate().map(column).collect::<Vec<_>>()
+        };
+        let study = &loaded.study;
+        [of(&study.targets, 0), of(&study.numbers, study.targets.len())]
     }
 
     /// A few lines for the terminal.

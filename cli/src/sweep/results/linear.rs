@@ -31,7 +31,7 @@ impl Linear {
         let is_drawn = plan.axes.is_empty() && !plan.draws.is_empty();
         (is_drawn && !loaded.study.slopes.is_empty()).then(|| {
             let [means, covariance] = plan.moments();
-            let numbers = loaded.study.numbers.len() - usize::from(loaded.study.keep.estimate);
+            let numbers = loaded.study.keep.sloped_numbers();
             Self { means, covariance, nearest: None, all: vec![(0.0, 0.0, 0.0); numbers] }
         })
     }

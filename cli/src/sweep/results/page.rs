@@ -1,17 +1,26 @@
 //! The page of a sweep: what it was, its figures, indices and errors.
 
 use super::super::loaded::Loaded;
+use super::cloud::{self, escaped};
 use super::column;
 use super::gathered::{Gathered, draws};
+use super::statistics;
 use crate::words::number;
 use std::fmt::Write as _;
 
-/// One HTML file that needs no other.
+/// The page's size in bytes, at most, as far as figures make it up.
+const LARGEST: usize = 295_000;
+
+/// Light or dark, as the reader has it.
+const STYLE: &str = ":root { color-scheme: light dark; } body { font: 15px sans-serif; max-width: 75em; margin: 2em auto; \
+    padding: 0 1em; } pre { background: #8882; padding: 1em; overflow-x: auto; } table { display: block; overflow-x: auto; } \
+    td, th { padding: 0.1em 1em 0.1em 0; text-align: left; font-weight: normal; } svg { max-width: 100%; height: auto; }";
+
+/// One HTML file that needs no other, unless a figure is too large for it.
 pub(super) fn page(loaded: &Loaded, gathered: &Gathered, figures: &[(&'static str, String)]) -> String {
     let mut html = format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title>\n<style>body {{ font: 15px \
-         sans-serif; max-width: 60em; margin: 2em auto; }} pre {{ background: #f4f4f4; padding: 1em; }} td, th {{ padding: \
-         0.1em 1em 0.1em 0; text-align: left; }}</style></head>\n<body><h1>{0}</h1>\n",
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title>\n<style>{STYLE}</style></head>\n\
+         <body><h1>{0}</h1>\n",
         escaped(&loaded.name)
     );
     let _ = write!(
@@ -32,13 +41,19 @@ pub(super) fn page(loaded: &Loaded, gathered: &Gathered, figures: &[(&'static st
         }
         html += "</table>\n";
     }
+    let [targets, numbers] = gathered.columns(loaded, 1);
+    if !numbers.is_empty() {
+        html += &statistics::table(&targets, &numbers, gathered.stride);
+        let _ = write!(html, "<h2>histograms</h2>\n{}", cloud::histograms(&numbers));
+    }
     for (name, svg) in figures {
+        // What would make the page too large stands beside it.
+        let svg = match html.len() + svg.len() < LARGEST {
+            true => svg.clone(),
+            false => format!("<img src=\"{name}.svg\" alt=\"{name}\">"),
+        };
         let _ = write!(html, "<h2>{name}</h2>\n{svg}\n");
     }
     html += "</body></html>\n";
     html
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
