@@ -313,7 +313,11 @@ impl Writer<'_> {
             .replace("{GYRO_CLOSURE_ROWS}", &format!("{{{}}}", self.closure_rows()))
             .replace("gyro_derivative_of_solver", "gyro_joint_derivative")
             .replace("GYRO_SOLVER_N", "GYRO_N_JOINTS");
+        let has_orientations =
+            self.module.places.iter().any(|place| matches!(place, Place::Orientation | Place::Body));
         let text = without(&text, "GYRO_HAS_LOOPS", self.has_loops());
+        let text = without(&text, "GYRO_HAS_PLACES", self.has_loops() || has_orientations);
+        let text = without(&text, "GYRO_HAS_ORIENTATIONS", has_orientations);
         let text = without(&text, "GYRO_HAS_JACOBIAN", self.has_jacobian());
         let text = text.replace("GYRO_HAS_JACOBIAN", if self.has_jacobian() { "1" } else { "0" });
         self.names.applied(&text)

@@ -156,6 +156,9 @@ where
     fn derivative(&self, model: &M, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
         Ode::<M>::derivative(&self.dynamics, model, t, y, dy);
     }
+    fn normalise(&self, model: &M, y: &mut Self::State) {
+        Ode::<M>::normalise(&self.dynamics, model, y);
+    }
 }
 
 impl<D, M, Dualled, S, J, const N: usize> Jacobian<M> for ByDuals<D, Dualled, S, J, N>

@@ -2,6 +2,7 @@
 
 mod advance;
 mod control;
+mod sides;
 mod state;
 mod watch;
 
@@ -26,6 +27,7 @@ use gyro_sim::{
     CorrectedDynamics, Dynamics, Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns, contact,
 };
 use nanoserde::{DeBin, SerBin};
+use sides::Sides;
 use std::io;
 use std::time::{Duration, Instant};
 
@@ -304,6 +306,7 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     budget: u64,
     /// The maximal state when it was last looked at.
     y: M::State,
+    sides: Sides,
     turns: Turns<M>,
     /// When the turns were last read, s.
     read_at: f64,
@@ -314,13 +317,14 @@ struct Run<'a, M: Partition<Scalar: Real>> {
 impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
     fn new(
         mechanism: &'a mut M,
-        motion: Box<dyn Motion<M>>,
+        mut motion: Box<dyn Motion<M>>,
         (y, start): (M::State, &'a Start),
         approach: &Approach,
         paths: Paths,
     ) -> Self {
         let angles: Vec<M::Scalar> = start.angles.iter().map(|&a| Scalar::constant(a)).collect();
         Self {
+            sides: Sides::of(mechanism, &mut *motion, &y),
             motion,
             inputs: &start.inputs,
             own_knots: &start.knots,
@@ -436,6 +440,7 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
     /// Has the state and the inputs that the motion sets by itself as they are at a time within the last step.
     fn look_at(&mut self, t: f64) -> Result<(), Error> {
         self.motion.at(self.mechanism, t, &mut self.y)?;
+        self.sides.set(self.y.as_mut());
         self.set_by_itself(t)?;
         Ok(())
     }
@@ -497,6 +502,7 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
         if self.motion.at(self.mechanism, t, &mut self.y).is_err() {
             return Ok(());
         }
+        self.sides.set(self.y.as_mut());
         let state: Vec<f64> = self.y.as_ref().iter().map(|x| x.to_f64()).collect();
         (told.tell)(Event::Stopped(t, &state))
     }

@@ -44,6 +44,9 @@ pub enum Symbol {
     Sine(usize),
     /// Its cosine.
     Cosine(usize),
+    /// The Euler parameter of that place in x over the length of all four: rotations are read as these say, however
+    /// long the four are.
+    Unit(usize),
     /// Entry of A(p), defined by eq. (3).
     Rotation { moving_body: usize, row: usize, column: usize },
     /// Entry of A_iᵀ A_j between a joint's first and second body, eq. (4).

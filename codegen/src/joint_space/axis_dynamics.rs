@@ -324,7 +324,7 @@ impl AxisTree {
         for segment in &self.segments {
             if let Freedom::Whole { position, orientation } = segment.station.freedom {
                 let graph = &mut system.graph;
-                let p = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Coordinate(orientation.x + k)));
+                let p = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Unit(orientation.x + k)));
                 let rotation = graph.rotation(&p);
                 let local = [0, 1, 2].map(|k| found[position.u + k]);
                 let global = graph.mat_vec(&rotation, &local);
@@ -408,7 +408,7 @@ fn along(system: &mut System, station: &Station, free: &[(usize, usize)], along:
     let mut own: Vec<_> = free.iter().map(|&(_, rate)| along[rate]).collect();
     if let Freedom::Whole { orientation, .. } = station.freedom {
         let graph = &mut system.graph;
-        let p = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Coordinate(orientation.x + k)));
+        let p = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Unit(orientation.x + k)));
         let rotation = graph.rotation(&p);
         let local = graph.transposed_vec(&rotation, &[own[0], own[1], own[2]]);
         own[..3].copy_from_slice(&local);

@@ -51,7 +51,7 @@ pub fn frames(system: &mut System, stations: &[Station]) -> Vec<Frame> {
             Freedom::Whole { .. } => Frame::own(0, Vec::new()),
             Freedom::Rigid => placing.rigid(graph),
             Freedom::Ball(place) => {
-                let p = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Coordinate(place.x + k)));
+                let p = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Unit(place.x + k)));
                 let rotation = graph.rotation(&p);
                 placing.ball(graph, &rotation)
             }

@@ -146,7 +146,7 @@ impl AxisTree {
         let mut wholes = Vec::new();
         for segment in &self.segments {
             if let Freedom::Whole { position, orientation } = segment.station.freedom {
-                let p = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Coordinate(orientation.x + k)));
+                let p = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Unit(orientation.x + k)));
                 wholes.push((position, graph.rotation(&p)));
             }
         }

@@ -352,6 +352,6 @@ fn is_own(groups: &[Group], group: usize, unknown: usize) -> bool {
 }
 
 fn orientation_of(graph: &mut Graph, x: usize) -> Mat3 {
-    let p = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Coordinate(x + k)));
+    let p = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Unit(x + k)));
     graph.rotation(&p)
 }

@@ -125,13 +125,7 @@ impl JointSpace {
         let derivative = rates.iter().copied().chain(of_accelerations).collect();
         let rates_of_rates: Vec<_> =
             (0..n_rates).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
-        // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form
-        // which is emitted.
-        let differentiated = if coordinates.have_orientations() {
-            vec![accelerations.roots.as_slice()]
-        } else {
-            candidates.shortest.iter().map(|form| &form[..n_rates]).collect()
-        };
+        let differentiated: Vec<_> = candidates.shortest.iter().map(|form| &form[..n_rates]).collect();
         let form = JointForm {
             coordinates: &coordinates,
             rates: &rates,

@@ -246,10 +246,10 @@ impl Directions<'_> {
                 direction.extend((0..3).map(|k| (Symbol::Coordinate(place.x + k), rate(graph, place.u + k))));
             }
             if let Some(place) = link.orientation {
-                let p = from_fn(|k| graph.symbol(Symbol::Coordinate(place.x + k)));
+                let p = from_fn(|k| graph.symbol(Symbol::Unit(place.x + k)));
                 let w = from_fn(|k| rate(graph, place.u + k));
                 let rates = graph.euler_rate(&p, &w);
-                direction.extend((0..4).map(|k| (Symbol::Coordinate(place.x + k), rates[k])));
+                direction.extend((0..4).map(|k| (Symbol::Unit(place.x + k), rates[k])));
             }
         }
         direction

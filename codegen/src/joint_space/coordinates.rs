@@ -273,11 +273,6 @@ impl Coordinates {
             links.filter(|link| link.scalars.iter().any(|scalar| self.invariant.contains(&scalar.place.x)));
         invariant.map(|link| link.link.body).collect()
     }
-
-    /// Whether a joint, or a body that nothing holds, has Euler parameters of its own.
-    pub fn have_orientations(&self) -> bool {
-        self.layout.links.iter().any(|link| link.orientation.is_some())
-    }
 }
 
 /// Of coordinates, with what is needed to close them: layout, values of what is determined, links, angles, sets of
@@ -369,7 +364,7 @@ fn unit_atoms(system: &mut System, layout: &Layout, angles: &WholeAngles) -> Vec
             unit.push([Symbol::Cosine(x), Symbol::Sine(x)].map(|symbol| graph.symbol(symbol)).to_vec());
         }
         if let Some(place) = link.orientation {
-            unit.push((0..4).map(|k| graph.symbol(Symbol::Coordinate(place.x + k))).collect());
+            unit.push((0..4).map(|k| graph.symbol(Symbol::Unit(place.x + k))).collect());
         }
     }
     for (place, _) in angles.places() {

@@ -154,10 +154,8 @@ impl JointForm<'_> {
             candidates
                 .push((format!("derivatives of {of}, from its roots"), backward(graph, form, variables)));
         }
-        // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form
-        // which is emitted. In loops the rates are no unknowns of the balance.
-        let is_open = self.coordinates.closure.rows.is_empty();
-        if self.coordinates.have_orientations() || !is_open {
+        // In loops the rates are no unknowns of the balance.
+        if !self.coordinates.closure.rows.is_empty() {
             return candidates;
         }
         let rates_of_rates: Vec<_> = (0..self.coordinates.layout.n_rates)

@@ -6,20 +6,17 @@
 //! ```
 //!
 //! The recursion moves positions along the rates. Euler parameters p are moved by the rates `½ G(p)ᵀ e`, which are
-//! orthogonal to each other and to p: with the derivatives `D` along these, and along p,
+//! orthogonal to each other and to p, along which nothing changes: with the derivatives `D` along these,
 //!
 //! ```text
-//! ∂u̇/∂p = 4 Σ D(½ Gᵀ e_k) (½ Gᵀ e_k)ᵀ + D(p) pᵀ     (|p| = 1)
+//! ∂u̇/∂p = 4 Σ D(½ Gᵀ e_k) (½ Gᵀ e_k)ᵀ / |p|²
 //! ```
 
-use super::coordinates::Coordinates;
 use super::jacobian::{Columns, JointForm, forward};
-use super::layout::Place;
 use super::on_request::{IN_JOINTS, Parts};
 use super::slopes::{against, columns_of};
 use crate::derive::system::System;
 use crate::expr::definitions::{Definitions, Expansion};
-use crate::expr::differentiate::{Derivative, Direction};
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use std::array::from_fn;
@@ -42,11 +39,10 @@ impl JointForm<'_> {
         }
         forces.extend(forces_by(system, &parts, &response.accelerations, &others));
         let forces = against(&mut system.graph, forces);
-        let across = self.across_spheres(&mut system.graph, n);
         let forms = response.of(&mut system.graph, forces).map(|(way, columns)| {
             let (by_place, rest) = columns.split_at(n);
             let (by_rate, by_others) = rest.split_at(n);
-            let by_coordinate = self.by_coordinates(&mut system.graph, by_place, &across);
+            let by_coordinate = self.by_coordinates(&mut system.graph, by_place);
             let mut by_others = by_others.iter();
             let column = |variable: &Symbol| match *variable {
                 Symbol::Coordinate(x) => by_coordinate[x].clone(),
@@ -58,25 +54,8 @@ impl JointForm<'_> {
         Some(forms.to_vec())
     }
 
-    /// The derivatives of the accelerations along p, for each p; none if nothing is derived by the state.
-    fn across_spheres(&self, graph: &mut Graph, n: usize) -> Columns {
-        if n == 0 {
-            return Columns::new();
-        }
-        let definitions = Definitions::default();
-        let mut across = Columns::new();
-        for place in orientations(self.coordinates) {
-            let along: Direction = (place.x..place.x + 4)
-                .map(|x| (Symbol::Coordinate(x), graph.symbol(Symbol::Coordinate(x))))
-                .collect();
-            let mut derivative = Derivative::new(&definitions, along);
-            across.push(self.accelerations[0].iter().map(|&root| derivative.of(graph, root)).collect());
-        }
-        across
-    }
-
-    /// By each coordinate, from derivatives along the rates and across the spheres.
-    fn by_coordinates(&self, graph: &mut Graph, by_place: &[Vec<ExprId>], across: &Columns) -> Columns {
+    /// By each coordinate, from derivatives along the rates.
+    fn by_coordinates(&self, graph: &mut Graph, by_place: &[Vec<ExprId>]) -> Columns {
         let layout = &self.coordinates.layout;
         let mut columns = vec![Vec::new(); layout.n_coordinates];
         if by_place.is_empty() {
@@ -88,27 +67,24 @@ impl JointForm<'_> {
         for place in layout.links.iter().filter_map(|link| link.position) {
             (0..3).for_each(|k| columns[place.x + k].clone_from(&by_place[place.u + k]));
         }
-        for (place, across) in orientations(self.coordinates).zip(across) {
+        let n_rates = layout.n_rates;
+        for place in layout.orientations() {
             let p: [_; 4] = from_fn(|k| graph.symbol(Symbol::Coordinate(place.x + k)));
-            let four = graph.integer(4);
+            let (four, square) = (graph.integer(4), graph.dot(&p, &p));
+            let scale = graph.div(four, square);
             let along: [_; 3] =
-                from_fn(|k| graph.euler_rate(&p, &from_fn(|l| if k == l { four } else { Graph::ZERO })));
-            for (j, &p) in p.iter().enumerate() {
-                let weights = [along[0][j], along[1][j], along[2][j], p];
+                from_fn(|k| graph.euler_rate(&p, &from_fn(|l| if k == l { scale } else { Graph::ZERO })));
+            for j in 0..p.len() {
+                let weights = along.map(|along| along[j]);
                 let entry = |row: usize| {
-                    let [a, b, c]: [_; 3] = from_fn(|k| by_place[place.u + k][row]);
-                    graph.dot_slices(&weights, &[a, b, c, across[row]])
+                    let by_place: [_; 3] = from_fn(|k| by_place[place.u + k][row]);
+                    graph.dot(&weights, &by_place)
                 };
-                columns[place.x + j] = (0..across.len()).map(entry).collect();
+                columns[place.x + j] = (0..n_rates).map(entry).collect();
             }
         }
         columns
     }
-}
-
-/// Where Euler parameters stand.
-fn orientations(coordinates: &Coordinates) -> impl Iterator<Item = Place> {
-    coordinates.layout.links.iter().filter_map(|link| link.orientation)
 }
 
 /// The derivatives of τ at these accelerations by what is no part of the state.

@@ -130,6 +130,11 @@ impl Layout {
         all.filter(|scalar| scalar.place.x < self.n_coordinates)
     }
 
+    /// Where Euler parameters stand.
+    pub fn orientations(&self) -> impl Iterator<Item = Place> {
+        self.links.iter().filter_map(|link| link.orientation)
+    }
+
     /// Where a scalar coordinate of a joint stands.
     pub fn scalar(&self, coordinate: JointCoordinate) -> Option<&Scalar> {
         self.links.iter().flat_map(|link| &link.scalars).find(|scalar| scalar.coordinate == coordinate)

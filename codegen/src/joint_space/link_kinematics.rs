@@ -72,7 +72,7 @@ impl LinkKinematics {
         };
         let graph = &mut system.graph;
         let r = from_fn(|k| graph.symbol(Symbol::Coordinate(position.x + k)));
-        let p = from_fn(|k| graph.symbol(Symbol::Coordinate(orientation.x + k)));
+        let p = from_fn(|k| graph.symbol(Symbol::Unit(orientation.x + k)));
         let rotation = graph.rotation(&p);
         let translations = (0..3).map(|k| Free {
             twist: SpatialVector { t: rotation[k], rho: ZERO3 },
@@ -277,7 +277,7 @@ fn relative_rotation(
     turned: Turned,
 ) -> Mat3 {
     if let Some(place) = coordinates.orientation {
-        let p = from_fn(|k| system.graph.symbol(Symbol::Coordinate(place.x + k)));
+        let p = from_fn(|k| system.graph.symbol(Symbol::Unit(place.x + k)));
         return system.graph.rotation(&p);
     }
     let mut rotation = at_zero(&mut system.graph, joint);

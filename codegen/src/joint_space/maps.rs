@@ -60,7 +60,7 @@ pub fn of_bodies(system: &mut System, layout: &Layout, links: &[LinkKinematics])
 
 /// Sines and cosines by those of half the angle, which the orientations need anyhow.
 fn in_half_angles(system: &mut System, layout: &Layout, values: Values) -> Values {
-    let mut of_angles = Values::default();
+    let mut of_angles = unit_vectors(&mut system.graph, layout);
     for scalar in layout.links.iter().flat_map(|link| &link.scalars).filter(|s| s.kind.is_angle()) {
         let x = scalar.place.x;
         let (sine, cosine) = whole(&mut system.graph, x);
@@ -68,6 +68,17 @@ fn in_half_angles(system: &mut System, layout: &Layout, values: Values) -> Value
         of_angles.insert(Symbol::Cosine(x), cosine);
     }
     expanded(system, of_angles, values)
+}
+
+/// Euler parameters over their length.
+fn unit_vectors(graph: &mut Graph, layout: &Layout) -> Values {
+    let mut values = Values::default();
+    for place in layout.orientations() {
+        let p: Vec4 = from_fn(|k| graph.symbol(Symbol::Coordinate(place.x + k)));
+        let unit = graph.normalise(&p);
+        values.extend((0..4).map(|k| (Symbol::Unit(place.x + k), unit[k])));
+    }
+    values
 }
 
 /// Values in which nothing is left to be expanded.
@@ -108,7 +119,7 @@ impl Carrier {
 
 /// Euler parameters of a body.
 fn orientation(system: &mut System, link: &LinkCoordinates, carrier: &Carrier) -> Vec4 {
-    let own = link.orientation.map(|place| from_fn(|k| system.graph.symbol(Symbol::Coordinate(place.x + k))));
+    let own = link.orientation.map(|place| from_fn(|k| system.graph.symbol(Symbol::Unit(place.x + k))));
     let (joint, reversed) = match link.link.attachment {
         Attachment::Free => return own.expect("a free body has an orientation"),
         Attachment::Constrained => return system.fixed_pose(link.link.body).p,
@@ -237,6 +248,7 @@ pub fn of_joints(system: &mut System, layout: &Layout, angles: &WholeAngles) -> 
                 _ => (system.poses[system.moving_bodies[moving_body]].p, pose.w),
             };
             values.extend((0..4).map(|k| (Symbol::Coordinate(place.x + k), p[k])));
+            values.extend((0..4).map(|k| (Symbol::Unit(place.x + k), p[k])));
             values.extend((0..3).map(|k| (Symbol::Rate(place.u + k), w[k])));
         }
     }
@@ -319,6 +331,7 @@ pub fn in_joints(
             values.insert(Symbol::Angle(turn), x);
         }
     }
+    values.extend(unit_vectors(&mut system.graph, layout));
     values.extend(turns_of_loops(system, layout, angles, determined));
     let rate = |graph: &mut Graph, place: Place| {
         let symbol = Symbol::Rate(place.u);

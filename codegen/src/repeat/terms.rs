@@ -215,6 +215,7 @@ pub fn variable(symbol: Symbol) -> (u8, usize, usize) {
         Symbol::RateOfRate(place) => (17, 0, place),
         Symbol::Sine(place) => (18, 0, place),
         Symbol::Cosine(place) => (19, 0, place),
+        Symbol::Unit(place) => (24, 0, place),
         Symbol::Rotation { moving_body, row, column } => (20, 3 * row + column, moving_body),
         Symbol::Relative { joint, row, column } => (21, 3 * row + column, joint),
         Symbol::RotationRate { moving_body, row, column } => (22, 3 * row + column, moving_body),

@@ -110,6 +110,7 @@ static void gyro_dop853_attempt(gyro_solver *s, const gyro *m, gyro_real t, gyro
         gyro_slope(s, m, t + K(gyro_dop853_stages[n].c) * h, s->stage, s->k[n + 1]);
     }
     gyro_combine(s->end, y, h, &gyro_dop853_stages[11], s->k);
+    gyro_normalise_orientations(s->end);
 }
 
 static void gyro_dop853_prepare(gyro_solver *s, const gyro *m, gyro_real t, gyro_real h, const gyro_real *y)

@@ -88,12 +88,12 @@ gyro_status gyro_solver_correct(gyro_solver *s, const gyro *m)
 static void gyro_between(const gyro_solver *s, gyro_real t, gyro_real *x)
 {
 #if GYRO_HAS_LOOPS
-    if (s->leap >= 0) {
+    if (s->leap >= 0)
         gyro_polynomial(s, t, s->leap + 1, x);
-        return;
-    }
+    else
 #endif
-    gyro_between_ends(s, (t - s->before_t) / s->before_h, x);
+        gyro_between_ends(s, (t - s->before_t) / s->before_h, x);
+    gyro_normalise_orientations(x);
 }
 
 gyro_status gyro_solver_interpolate(gyro_solver *s, const gyro *m, gyro_real t, gyro_real *x)

@@ -17,6 +17,7 @@ static void gyro_rk4_attempt(gyro_solver *s, const gyro *m, gyro_real t, gyro_re
     gyro_combine(s->end, y, h, &gyro_rk4_third, s->k);
     gyro_slope(s, m, t + h, s->end, s->k[3]);
     gyro_combine(s->end, y, h, &gyro_rk4_end, s->k);
+    gyro_normalise_orientations(s->end);
     gyro_rate(s->rate, s->k[2], s->k[1], third, second);
 }
 

@@ -118,6 +118,7 @@ static void gyro_rodas4_attempt(gyro_solver *s, const gyro *m, gyro_real t, gyro
     }
     for (int i = 0; i < N; i++)
         s->end[i] = K(1.0) * (K(1.0) * s->k[5][i]) + s->stage[i];
+    gyro_normalise_orientations(s->end);
     s->rate[0] = s->rate[1] = K(0.0);
 }
 

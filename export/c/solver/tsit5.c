@@ -50,6 +50,8 @@ static void gyro_tsit5_attempt(gyro_solver *s, const gyro *m, gyro_real t, gyro_
     for (int n = 0; n < 6; n++) {
         gyro_real *to = n < 5 ? s->stage : s->end;
         gyro_combine(to, y, h, &gyro_tsit5_stages[n], s->k);
+        if (n == 5)
+            gyro_normalise_orientations(to);
         gyro_slope(s, m, t + K(gyro_tsit5_stages[n].c) * h, to, s->k[n + 1]);
     }
     gyro_rate(s->rate, s->k[6], s->k[5], s->end, s->stage);

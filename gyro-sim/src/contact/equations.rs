@@ -248,6 +248,10 @@ where
             }
         }
     }
+
+    fn normalise(&self, model: &M, y: &mut D::State) {
+        self.dynamics.normalise(model, y);
+    }
 }
 
 /// A correction of the equations without contacts.

@@ -19,6 +19,9 @@ impl<M: JointSpace, const N: usize> Ode<M> for JointInputs<N> {
     fn derivative(&self, model: &M, t: M::Scalar, y: &M::Joints, dy: &mut M::Joints) {
         Joint.derivative(model, t, y, dy);
     }
+    fn normalise(&self, model: &M, y: &mut M::Joints) {
+        Joint.normalise(model, y);
+    }
 }
 
 impl<M: JointSpace + Clone, const N: usize> Forced<M> for JointInputs<N> {
@@ -65,6 +68,9 @@ impl<M: JointSpace, const N: usize> Ode<M> for LoadedJointInputs<N> {
 
     fn derivative(&self, model: &M, t: M::Scalar, y: &M::Joints, dy: &mut M::Joints) {
         Joint.derivative(model, t, y, dy);
+    }
+    fn normalise(&self, model: &M, y: &mut M::Joints) {
+        Joint.normalise(model, y);
     }
 }
 

@@ -1,6 +1,8 @@
 //! Joint coordinates.
 
 use super::{Mechanism, Storage};
+use crate::Scalar;
+use crate::correct::normalise;
 #[cfg(feature = "wire")]
 use crate::wire::*;
 
@@ -10,6 +12,7 @@ use crate::wire::*;
 /// [`JointSpace::joint_layout`] lists them. x has, joint after joint in the order of the model file, each scalar
 /// coordinate (an angle, rad, continuous over turns; a displacement, m), and then, of spherical joints and points on a
 /// line, the Euler parameters of the second body in the first's frame; after the joints, of each free body `r` and `p`.
+/// Euler parameters may have any length but zero: the rotation is that of `p / |p|`.
 /// u has their rates: of Euler parameters the angular velocity relative to the first body in the second's frame, rad/s,
 /// of free bodies `s` and `w'`. Coordinates that couplers, drivers or loops determine as functions of others and of
 /// time are not among them. Last in x come turn references of joints that close loops, where something depends on how
@@ -58,8 +61,8 @@ pub trait JointSpace: Mechanism {
 ///
 /// Generated trees can have them, and mechanisms with loops, or with joints that are not made of turns and
 /// displacements (screws, rods, points on a line), of up to eight rates; not where a third derivative of a table would
-/// be needed. They are the derivatives of the emitted functions as they stand, at unit Euler parameters in directions
-/// too in which the state cannot change (across their unit sphere).
+/// be needed. They are the derivatives of the emitted functions as they stand, of Euler parameters of any length and
+/// along them, too, where nothing changes but their own rates.
 pub trait JointJacobian: JointSpace {
     /// ∂f/∂x, n × n for a joint state of n numbers, row by row.
     type Jacobian: Storage<Self::Scalar>;
@@ -160,6 +163,19 @@ impl JointLayout<'_> {
     pub fn n_rates(&self) -> usize {
         self.places.iter().map(|place| place.n_rates()).sum()
     }
+
+    /// Makes Euler parameters unit vectors. All that is computed of a joint state is the same before and after, but
+    /// the rates of Euler parameters, which are in proportion to them.
+    #[inline(always)]
+    pub fn normalise<T: Scalar>(&self, x: &mut [T]) {
+        let mut at = 0;
+        for place in self.places {
+            if let Some(euler) = place.euler() {
+                normalise(&mut x[at + euler..at + euler + 4]);
+            }
+            at += place.n_coordinates();
+        }
+    }
 }
 
 impl JointPlace {
@@ -169,6 +185,15 @@ impl JointPlace {
             Self::Scalar { .. } | Self::Turn { .. } => 1,
             Self::Orientation { .. } => 4,
             Self::Body { .. } => 7,
+        }
+    }
+
+    /// Where among these Euler parameters start, if there are any.
+    pub const fn euler(self) -> Option<usize> {
+        match self {
+            Self::Scalar { .. } | Self::Turn { .. } => None,
+            Self::Orientation { .. } => Some(0),
+            Self::Body { .. } => Some(3),
         }
     }
 

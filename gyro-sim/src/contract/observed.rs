@@ -18,8 +18,8 @@ pub trait JointOutputs: JointSpace {
 /// any u̇, row by row, a row for each number of [`Mechanism::Outputs`](crate::Mechanism::Outputs). With u̇ as the
 /// equations of motion have it, `C = ∂g/∂(x, u) + ∂g/∂u̇ · ∂u̇/∂(x, u)`, and likewise for inputs and parameters.
 ///
-/// They are the derivatives of the emitted function as it stands, in directions too in which the state cannot change
-/// (of Euler parameters, across their unit sphere).
+/// They are the derivatives of the emitted function as it stands; along Euler parameters, whose length means nothing,
+/// they are zero.
 ///
 /// Implemented where it is asked for: `functions = ["output_derivatives"]` in the model file, or
 /// `--functions`; not where a third derivative of a table would be needed.

@@ -38,6 +38,10 @@ pub trait Ode<M = ()> {
 
     /// Writes `f(t, y)`.
     fn derivative(&self, model: &M, t: Self::Scalar, y: &Self::State, dy: &mut Self::State);
+
+    /// Replaces y by the state that stands for it where several are the same one: Euler parameters, whose length
+    /// means nothing, are made unit vectors. Methods end each step with this, so that nothing drifts away.
+    fn normalise(&self, _model: &M, _y: &mut Self::State) {}
 }
 
 /// A first-order system with its Jacobian: what implicit methods need besides.
@@ -94,6 +98,10 @@ impl<M: JointSpace> Ode<M> for Joint {
     fn derivative(&self, mechanism: &M, t: M::Scalar, x: &M::Joints, dx: &mut M::Joints) {
         mechanism.joint_derivative(t, x, dx);
     }
+    #[inline(always)]
+    fn normalise(&self, mechanism: &M, x: &mut M::Joints) {
+        mechanism.joint_layout().normalise(x.as_mut());
+    }
 }
 
 impl<M: JointJacobian> Jacobian<M> for Joint {
@@ -133,6 +141,12 @@ impl<D: Ode<M>, M> System<'_, D, M> {
     #[inline(always)]
     pub fn derivative(&self, t: D::Scalar, y: &D::State, dy: &mut D::State) {
         self.dynamics.derivative(self.model, t, y, dy);
+    }
+
+    /// Replaces y by the state that stands for it: [`Ode::normalise`].
+    #[inline(always)]
+    pub fn normalise(&self, y: &mut D::State) {
+        self.dynamics.normalise(self.model, y);
     }
 }
 

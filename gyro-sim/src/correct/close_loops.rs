@@ -1,6 +1,6 @@
 //! The correction of loops in joint coordinates.
 
-use super::{CONVERGED_EPSILONS, Correction, FARTHEST, MAX_ITERATIONS, check_finite, normalise, reach};
+use super::{CONVERGED_EPSILONS, Correction, FARTHEST, MAX_ITERATIONS, check_finite, reach};
 use crate::pivoting::is_resolvable;
 use crate::violation::{Violation, closure_violation};
 use crate::{
@@ -78,7 +78,7 @@ impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
 
     fn close_positions(&mut self, mechanism: &M, t: M::Scalar, x: &mut M::Joints) -> Result<(), Error> {
         let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
-        normalise_orientations(mechanism.joint_layout(), x.as_mut());
+        mechanism.joint_layout().normalise(x.as_mut());
         check_finite(t, x.as_ref())?;
         let mut worst = self.worst(mechanism, t, x);
         for _ in 0..MAX_ITERATIONS {
@@ -102,7 +102,7 @@ impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
         self.before.as_mut().copy_from_slice(x.as_ref());
         mechanism.close_positions(t, x);
         self.refuse_jump(mechanism, t, (x, owner))?;
-        normalise_orientations(mechanism.joint_layout(), x.as_mut());
+        mechanism.joint_layout().normalise(x.as_mut());
         check_finite(t, x.as_ref())
     }
 
@@ -113,7 +113,7 @@ impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
         t: M::Scalar,
         x: &mut M::Joints,
     ) -> Result<(), Error> {
-        normalise_orientations(mechanism.joint_layout(), x.as_mut());
+        mechanism.joint_layout().normalise(x.as_mut());
         if mechanism.joint_layout().closure_rows.is_empty() {
             return Ok(());
         }
@@ -260,20 +260,6 @@ fn is_angle<M: Mechanism>(mechanism: &M, place: JointPlace) -> bool {
     kind == Some(&Coordinate::Angle)
 }
 
-/// Makes unit vectors of all Euler parameters.
-fn normalise_orientations<T: Scalar>(layout: &JointLayout<'_>, x: &mut [T]) {
-    let mut rest = x;
-    for place in layout.places {
-        let Some((own, others)) = rest.split_at_mut_checked(place.n_coordinates()) else { return };
-        match place {
-            JointPlace::Scalar { .. } | JointPlace::Turn { .. } => {}
-            JointPlace::Orientation { .. } => normalise(own),
-            JointPlace::Body { .. } => normalise(&mut own[3..]),
-        }
-        rest = others;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -289,7 +275,7 @@ mod tests {
             closure_rows: &[],
         };
         let mut x = [7.0, 1.0, 2.0, 3.0, 1.0, -1.0, 1.0, 1.0, 2.0, 0.0, 0.0, 0.0, 9.0];
-        normalise_orientations(&layout, &mut x);
+        layout.normalise(&mut x);
         assert_eq!(x, [7.0, 1.0, 2.0, 3.0, 0.5, -0.5, 0.5, 0.5, 1.0, 0.0, 0.0, 0.0, 9.0]);
     }
 }

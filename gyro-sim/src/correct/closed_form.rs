@@ -33,12 +33,23 @@ impl<M: JointSpace<Scalar: Real>> ClosedForm<M> {
         mechanism.to_joints(t, y, &mut self.joints);
         let closed = self.loops.correct(mechanism, t, &mut self.joints);
         mechanism.to_maximal(t, &self.joints, y);
-        let kept =
-            y.as_mut().iter_mut().zip(self.before.as_ref()).skip(13 * mechanism.description().bodies.len());
+        let n_bodies = mechanism.description().bodies.len();
+        let kept = y.as_mut().iter_mut().zip(self.before.as_ref()).skip(13 * n_bodies);
         kept.for_each(|(element, before)| *element = *before);
+        let bodies = y.as_mut().chunks_exact_mut(7).zip(self.before.as_ref().chunks_exact(7));
+        bodies.take(n_bodies).for_each(|(body, before)| keep_side(&mut body[3..], &before[3..]));
         refer_turns(mechanism, t, y);
         // Angles are continued from these: what is not finite must not stay among them.
         check_finite(t, y.as_ref()).and(closed).inspect_err(|_| self.joints = mechanism.joint_start())
+    }
+}
+
+/// Of the two that stand for the same orientation, takes the Euler parameters that are nearer to those before.
+fn keep_side<T: Real>(p: &mut [T], before: &[T]) {
+    let zero = T::constant(0.0);
+    let along = p.iter().zip(before).fold(zero, |sum, (a, b)| T::fused(*a, *b, sum));
+    if along < zero {
+        p.iter_mut().for_each(|e| *e = -*e);
     }
 }
 

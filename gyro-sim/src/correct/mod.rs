@@ -132,7 +132,7 @@ pub(crate) fn reach<M: Mechanism<Scalar: Lanes>>(mechanism: &M, y: &M::State) ->
 }
 
 /// Makes a unit vector of Euler parameters.
-fn normalise<T: Scalar>(p: &mut [T]) {
+pub(crate) fn normalise<T: Scalar>(p: &mut [T]) {
     let square = p.iter().fold(T::constant(0.0), |sum, e| T::fused(*e, *e, sum));
     let scale = T::constant(1.0) / square.sqrt();
     p.iter_mut().for_each(|e| *e = *e * scale);

@@ -120,6 +120,7 @@ impl<D: Ode<M>, M> Method<D, M> for Dop853<D::State, D::Scalar> {
             (0.311_164_366_957_819_9, &k[8]), (-0.152_160_949_662_516_1, &k[9]),
             (0.201_365_400_804_030_34, &k[10]), (0.044_710_615_727_772_59, &k[11]),
         ]);
+        system.normalise(&mut self.end);
     }
 
     fn end(&self) -> &D::State {

@@ -49,6 +49,7 @@ impl<D: Ode<M>, M> Method<D, M> for Kutta4<D::State> {
         combine(&mut self.end, y, h, [
             (1.0 / 6.0, &k[0]), (1.0 / 3.0, &k[1]), (1.0 / 3.0, &k[2]), (1.0 / 6.0, &k[3]),
         ]);
+        system.normalise(&mut self.end);
     }
 
     fn end(&self) -> &D::State {

@@ -37,6 +37,7 @@ impl<S: Clone> Rk4<S> {
         for ((y, sum), slope) in y.as_mut().iter_mut().zip(self.sum.as_ref()).zip(self.slope.as_ref()) {
             *y = D::Scalar::fused(sixth, *slope, *sum);
         }
+        system.normalise(y);
     }
 
     /// Begins the sum with the slope at `y` and its weight, and goes along it to the first stage.

@@ -140,6 +140,7 @@ where
         ]);
         solve(u6, 0.0);
         combine(&mut self.end, stage, one, [(1.0, u6)]);
+        system.normalise(&mut self.end);
     }
 
     fn end(&self) -> &D::State {

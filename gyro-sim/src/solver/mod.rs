@@ -276,13 +276,13 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         if self.leap.is_none() {
             self.prepare_interpolation(system);
         }
-        self.between(t, out);
+        self.between(system, t, out);
         match self.correction.correct(system, t, out) {
             // Too near a singular pose for a correction the motion between steps is no less smooth.
             Err(Error::Jump { .. } | Error::Singular { .. } | Error::NoConvergence { .. })
                 if self.watch == Watch::Needed =>
             {
-                self.between(t, out);
+                self.between(system, t, out);
                 Ok(())
             }
             outcome => outcome,
@@ -305,7 +305,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
     }
 
     /// The state within the last step as the method has it, or the polynomial that has led to its end.
-    fn between<M>(&self, t: T, out: &mut S)
+    fn between<M>(&self, system: &M, t: T, out: &mut S)
     where
         D: Ode<M, Scalar = T, State = S>,
         A: Method<D, M>,
@@ -315,6 +315,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
             Some(degree) => self.past.at(t, degree + 1, out),
             None => self.method.between((t - *start) / *h, out),
         }
+        self.dynamics.normalise(system, out);
     }
 
     /// Time and state as they were given must be finite; later ones are looked at as they come.

@@ -4,6 +4,7 @@
 mod compiled;
 mod contacts;
 mod kernels;
+mod lengths;
 mod pair;
 mod partition;
 mod proof;

@@ -31,16 +31,16 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 |
 //! | newton_step | dependent positions, one Newton step | 15 | 22 | 1 | 38 | 0 of 7 |
 //! | solve_velocities | dependent velocities, eq. (19) | 11 | 18 | 0 | 29 | 0 of 6 |
-//! | joint_accelerations | u̇ in joint coordinates | 4 | 9 | 0 | 13 | 1 of 3 |
+//! | joint_accelerations | u̇ in joint coordinates | 7 | 17 | 1 | 25 | 1 of 3 |
 //! | joint_derivative | ẋ but for u̇ | 8 | 16 | 0 | 24 | 0 of 4 |
-//! | to_maximal | (q, v) of a joint state | 15 | 22 | 0 | 37 | 0 of 13 |
+//! | to_maximal | (q, v) of a joint state | 18 | 30 | 1 | 49 | 0 of 13 |
 //! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 7 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 4 | 9 | 0 | 13 | 1 of 3 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 30 | 0 | 53 | 1 of 6 |
 //! | corrected_derivative | ẏ but for the accelerations, there | 8 | 16 | 0 | 24 | 0 of 7 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 |
 //! | corrected_solution | both | 24 | 33 | 0 | 57 | 1 of 9 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 14 | 0 | 14 | 20 of 56 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 25 | 45 | 1 | 71 | 20 of 56 |
 //!
 //! # Proof
 //!
@@ -772,7 +772,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
             k(200.0),
         ]
     }
-    /// Writes u̇: 13 operations (4 ±, 9 ×, 0 ÷).
+    /// Writes u̇: 25 operations (7 ±, 17 ×, 1 ÷) and 1 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -782,10 +782,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         let u0 = x[4];
         let u1 = x[5];
         let u2 = x[6];
-        let t0 = k(0.5454545454545454) * u2;
+        let t0 = T::fused(x3, x3, T::fused(x2, x2, T::fused(x1, x1, x0 * x0)));
+        let t1 = k(1.0) / t0.sqrt();
+        let t2 = x3 * t1;
+        let t3 = x2 * t1;
+        let t4 = x1 * t1;
+        let t5 = x0 * t1;
+        let t6 = k(0.5454545454545454) * u2;
         *out = [
-            T::fused(u1, t0, k(356.72727272727275) * T::fused(x0, x1, x2 * x3)),
-            -T::fused(u0, t0, k(356.72727272727275) * T::fused(-x0, x2, x1 * x3)),
+            T::fused(k(356.72727272727275), T::fused(t3, t2, t5 * t4), u1 * t6),
+            T::fused(-u0, t6, k(356.72727272727275) * T::fused(-t4, t2, t5 * t3)),
             k(0.0),
         ];
     }
@@ -802,16 +808,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         let u1 = x[5];
         let u2 = x[6];
         *dx = [
-            -(k(0.5) * T::fused(x3, u2, T::fused(x2, u1, x1 * u0))),
-            k(0.5) * T::fused(x2, u2, T::fused(-x3, u1, x0 * u0)),
-            k(0.5) * T::fused(-x1, u2, T::fused(x0, u1, x3 * u0)),
-            -(k(0.5) * T::fused(-x0, u2, T::fused(-x1, u1, x2 * u0))),
+            -(k(0.5) * T::fused(u2, x3, T::fused(u1, x2, u0 * x1))),
+            k(0.5) * T::fused(u2, x2, T::fused(-u1, x3, u0 * x0)),
+            k(0.5) * T::fused(-u2, x1, T::fused(u1, x0, u0 * x3)),
+            -(k(0.5) * T::fused(-u2, x0, T::fused(-u1, x1, u0 * x2))),
             rates[0],
             rates[1],
             rates[2],
         ];
     }
-    /// Writes the maximal state of a joint state: 37 operations (15 ±, 22 ×, 0 ÷).
+    /// Writes the maximal state of a joint state: 49 operations (18 ±, 30 ×, 1 ÷) and 1 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -821,26 +827,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         let u0 = x[4];
         let u1 = x[5];
         let u2 = x[6];
-        let t0 = x0 * x2;
-        let t1 = x1 * x3;
-        let t2 = x0 * x1;
-        let t3 = x2 * x3;
-        let t4 = x0 * x0;
-        let t5 = x0 * x3;
-        let t6 = x1 * x2;
-        let t7 = T::fused(k(0.5) - T::fused(x1, x1, t4), u1, (t6 - t5) * u0);
-        let t8 = T::fused(t6 + t5, u1, (k(0.5) - T::fused(x2, x2, t4)) * u0);
+        let t0 = T::fused(x3, x3, T::fused(x2, x2, T::fused(x1, x1, x0 * x0)));
+        let t1 = k(1.0) / t0.sqrt();
+        let t2 = x3 * t1;
+        let t3 = x1 * t1;
+        let t4 = t3 * t2;
+        let t5 = x2 * t1;
+        let t6 = x0 * t1;
+        let t7 = t6 * t5;
+        let t8 = t5 * t2;
+        let t9 = t6 * t3;
+        let t10 = t6 * t6;
+        let t11 = t3 * t5;
+        let t12 = t6 * t2;
+        let t13 = T::fused(-u0, t12 - t11, u1 * (k(0.5) - T::fused(t3, t3, t10)));
+        let t14 = T::fused(u0, k(0.5) - T::fused(t5, t5, t10), u1 * (t12 + t11));
         *y = [
-            k(0.08) * (t1 + t0),
-            k(0.08) * (t3 - t2),
-            -(k(0.08) * (k(0.5) - T::fused(x3, x3, t4))),
-            x0,
-            x1,
-            x2,
-            x3,
-            -(k(0.08) * t7),
-            k(0.08) * t8,
-            -(k(0.08) * T::fused(-(t1 - t0), u1, (t3 + t2) * u0)),
+            k(0.08) * (t7 + t4),
+            -(k(0.08) * (t9 - t8)),
+            -(k(0.08) * (k(0.5) - T::fused(t2, t2, t10))),
+            t6,
+            t3,
+            t5,
+            t2,
+            -(k(0.08) * t13),
+            k(0.08) * t14,
+            -(k(0.08) * T::fused(u0, t9 + t8, u1 * (t7 - t4))),
             u0,
             u1,
             u2,
@@ -972,7 +984,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for HeavyTop<T> {
             input_jacobian: [T::constant(0.0); 0],
         }
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 14 operations (0 ±, 14 ×, 0 ÷).
+    /// Writes ∂f/∂x and ∂f/∂t: 71 operations (25 ±, 45 ×, 1 ÷) and 1 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -995,11 +1007,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for HeavyTop<T> {
         let t4 = k(0.5) * x2;
         let t5 = k(0.5) * x3;
         let t6 = k(0.5) * x0;
-        let t7 = k(356.72727272727275) * x1;
-        let t8 = k(356.72727272727275) * x0;
-        let t9 = k(356.72727272727275) * x3;
-        let t10 = k(356.72727272727275) * x2;
-        let t11 = k(0.5454545454545454) * u2;
+        let t7 = T::fused(x3, x3, T::fused(x2, x2, T::fused(x1, x1, x0 * x0)));
+        let t8 = k(1.0) / t7.sqrt();
+        let t9 = k(356.72727272727275) * t8;
+        let t10 = x1 * t9;
+        let t11 = t8 * t10;
+        let t12 = x0 * t9;
+        let t13 = x3 * t9;
+        let t14 = x2 * t9;
+        let t15 = T::fused(x3, t14, T::fused(x2, t13, T::fused(x0, t10, x1 * t12)));
+        let t16 = t8 * t8;
+        let t17 = k(0.5) * t8;
+        let t18 = t17 * (t16 * t15);
+        let t19 = x0 * t18;
+        let t20 = t8 * t12;
+        let t21 = x1 * t18;
+        let t22 = t8 * t13;
+        let t23 = x2 * t18;
+        let t24 = t8 * t14;
+        let t25 = x3 * t18;
+        let t26 = k(0.5454545454545454) * u2;
+        let t27 = T::fused(x3, t10, T::fused(x1, t13, -T::fused(x0, t14, x2 * t12)));
+        let t28 = t17 * (t16 * t27);
+        let t29 = x0 * t28;
+        let t30 = x1 * t28;
+        let t31 = x2 * t28;
+        let t32 = x3 * t28;
         *dfdx = [
             k(0.0),
             -t0,
@@ -1029,18 +1062,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for HeavyTop<T> {
             -t4,
             t3,
             t6,
-            t7,
-            t8,
-            t9,
-            t10,
+            -(t19 + (t19 - t11)),
+            -(t21 + (t21 - t20)),
+            -(t23 + (t23 - t22)),
+            -(t25 + (t25 - t24)),
             k(0.0),
-            t11,
+            t26,
             k(0.5454545454545454) * u1,
-            t10,
-            -t9,
-            t8,
-            -t7,
-            -t11,
+            t29 + (t24 + t29),
+            t30 - (t22 - t30),
+            t31 + (t20 + t31),
+            t32 - (t11 - t32),
+            -t26,
             k(0.0),
             -(k(0.5454545454545454) * u0),
             k(0.0),

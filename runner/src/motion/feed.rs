@@ -132,6 +132,10 @@ impl<L: Ode<M, Scalar = M::Scalar>, M: Mechanism> Ode<M> for Fed<L, M> {
             Some(feed) => self.lens.derivative(&feed.at(t), t, y, dy),
         }
     }
+
+    fn normalise(&self, mechanism: &M, y: &mut L::State) {
+        self.lens.normalise(mechanism, y);
+    }
 }
 
 impl<M: JointSpace<Joints: 'static> + 'static> Forced<M> for Fed<Joint, M> {

@@ -69,6 +69,16 @@ impl<M: JointSpace<Scalar = f64>, D: JointSpace<Scalar = Number>> Ode<M> for Var
             part.write_slopes(k, &slope, dy);
         }
     }
+
+    fn normalise(&self, mechanism: &M, y: &mut Vec<f64>) {
+        for (k, part) in self.0.iter().enumerate() {
+            let mut x = part.joints(k, y);
+            part.mechanism.joint_layout().normalise(x.as_mut());
+            part.write_slopes(k, &x, y);
+        }
+        let layout = mechanism.joint_layout();
+        layout.normalise(&mut y[..layout.n_coordinates()]);
+    }
 }
 
 /// Closes loops: x as in runs without derivatives, and S by the derivative of a step of Newton's method there, which is

@@ -127,11 +127,22 @@ pub(super) fn velocities<'s, F>(case: &Case<'_>, state: &'s [F]) -> &'s [F] {
     &state[7 * n..13 * n]
 }
 
-/// The state satisfies the constraints but those that close loops; the coordinates, rates and work that it has are
+/// The joint state with Euler parameters of length one: it is of the same motion.
+fn normalised<'a>(case: &Case<'a>, layout: &JointLayout) -> Option<Vec<Term<'a>>> {
+    let mut joints = case.joints.clone();
+    for start in layout.euler() {
+        let p = &mut joints[start..start + 4];
+        let scale = Written.sqrt(&dot(p, p)).inv()?;
+        p.iter_mut().for_each(|e| *e = e.mul(&scale));
+    }
+    Some(joints)
+}
+
+/// The state satisfies the constraints but those that close loops; Euler parameters being normalised, the coordinates, rates and work that it has are
 /// those given, and its turn references the continuous angles.
 pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let layout = case.module.joints.as_ref()?;
-    let maximal = case.maximal(&case.joints);
+    let (maximal, joints) = (case.maximal(&case.joints), normalised(case, layout)?);
     let textbook = case.textbook(&maximal)?;
     let satisfied = |rows: Vec<Term<'a>>| {
         let rows = rows.into_iter().enumerate();
@@ -141,8 +152,8 @@ pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     residuals.extend(satisfied(textbook.velocity_residual()?));
     for place in &layout.places {
         let (coordinates, rates) = place.of.sizes();
-        let x = &case.joints[place.x..place.x + coordinates];
-        let u = &case.joints[layout.n_coordinates + place.u..][..rates];
+        let x = &joints[place.x..place.x + coordinates];
+        let u = &joints[layout.n_coordinates + place.u..][..rates];
         let (found, expected) = match place.of {
             Freedom::Scalar(on) => match textbook.reading(on)? {
                 Reading::Angle { sine, cosine, rate } => {
@@ -200,7 +211,7 @@ fn angle_differs<'a>(
 pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let layout = case.module.joints.as_ref()?;
     let maximal = case.maximal(&case.joints);
-    let mut residuals = differences(&case.run("to_joints", &maximal), &case.joints);
+    let mut residuals = differences(&case.run("to_joints", &maximal), &normalised(case, layout)?);
     let textbook = case.textbook(&case.point)?;
     let (rates, one) = (textbook.position_rates(), Term::one(case.point.context));
     // The buffer changes by its own next elements: as good as any other numbers.
@@ -269,19 +280,13 @@ pub fn derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let (found, rest) = motion.derivative[layout.n_coordinates..].split_at(layout.n_rates);
     residuals.extend(differences(found, &motion.rates_of_rates));
     residuals.extend(differences(rest, &motion.power()?));
-    residuals.extend(coordinate_rates(case, layout));
+    residuals.extend(coordinate_rates(case, layout, &motion.derivative));
     Some(residuals)
 }
 
-/// `ẋ` of Euler parameters of any length, `½ G(p)ᵀ u`, and what else moves with a free body.
-fn coordinate_rates<'a>(case: &Case<'a>, layout: &JointLayout) -> Vec<Term<'a>> {
-    let mut joints = case.joints.clone();
-    for (start, factor) in layout.euler().zip(&case.factors) {
-        joints[start..start + 4].iter_mut().for_each(|e| *e = e.mul(factor));
-    }
-    let accelerations = vec![Term::zero(case.point.context); layout.n_rates];
-    let given = Arguments { joints: &joints, accelerations: &accelerations, ..case.given(&case.point) };
-    let found = case.results("joint_derivative", given);
+/// `ẋ`: of Euler parameters of any length `½ G(p)ᵀ u`.
+fn coordinate_rates<'a>(case: &Case<'a>, layout: &JointLayout, found: &[Term<'a>]) -> Vec<Term<'a>> {
+    let joints = &case.joints;
     let mut residuals = Vec::new();
     for place in &layout.places {
         let (coordinates, rates) = place.of.sizes();

@@ -78,7 +78,8 @@ impl<F: Field> Draw<F> {
     }
 }
 
-/// A random joint state with |p| = 1; nothing of mechanisms that have none.
+/// A random joint state, with Euler parameters of any length (a random multiple of unit ones, so that their length
+/// exists modulo a prime too); nothing of mechanisms that have none.
 fn joint_state<F: Field>(
     module: &Module,
     context: F::Context,
@@ -87,7 +88,8 @@ fn joint_state<F: Field>(
     let Some(layout) = &module.joints else { return Some(Vec::new()) };
     let mut state: Vec<F> = (0..layout.n_state()).map(|_| draw()).collect();
     for start in layout.euler() {
-        state[start..start + 4].clone_from_slice(&on_sphere(context, [(); 3].map(|()| draw()))?);
+        let (length, unit) = (draw(), on_sphere(context, [(); 3].map(|()| draw()))?);
+        state[start..start + 4].clone_from_slice(&unit.map(|e| e.mul(&length)));
     }
     Some(state)
 }
@@ -128,7 +130,7 @@ pub(super) fn degree(model: &Model, module: &Module, source: Source) -> Degree {
         Source::State(k) if k < 7 * model.coordinate_bodies().len() && euler.contains(&(k % 7)) => {
             Degree::quotient(2.0, 2.0)
         }
-        Source::Joint(k) | Source::Before(k) if turns(k) => Degree::quotient(2.0, 2.0),
+        Source::Joint(k) | Source::Before(k) if turns(k) => Degree::quotient(3.0, 2.0),
         _ => Degree::polynomial(1.0),
     }
 }

@@ -57,6 +57,7 @@ impl Variables for ModuleWriter<'_> {
             Symbol::Entry { .. } | Symbol::Local(_) => unreachable!("loops know what these are"),
             Symbol::Sine(_)
             | Symbol::Cosine(_)
+            | Symbol::Unit(_)
             | Symbol::Angle(_)
             | Symbol::Rotation { .. }
             | Symbol::Relative { .. }
