@@ -362,9 +362,8 @@ impl Scale {
 
     /// The time of the last sample before a coordinate is lost.
     fn until(&self, tracks: &[Track], times: &[f64]) -> f64 {
-        let is_lost = |k: usize| {
-            tracks.iter().any(|track| ratio(track.errors[k][POSITION], self.reach(track)) > LOST)
-        };
+        let is_lost =
+            |k: usize| tracks.iter().any(|track| ratio(track.errors[k][POSITION], self.reach(track)) > LOST);
         (0..times.len()).take_while(|&k| !is_lost(k)).last().map_or(0.0, |k| times[k])
     }
 }

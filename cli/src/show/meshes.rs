@@ -106,11 +106,18 @@ fn unreadable(text: &[u8]) -> Option<String> {
         return Some(format!("its elements are nested deeper than {DEEPEST}"));
     }
     let text = String::from_utf8_lossy(text);
-    let digits = |rest: &str| rest.trim_start_matches(['"', '\'', ' ']).split(|c: char| !c.is_ascii_digit()).next().map(str::to_owned);
-    let is_there = |count: &String| !count.is_empty() && count.parse().is_ok_and(|n: u64| n <= text.len() as u64);
+    let digits = |rest: &str| {
+        rest.trim_start_matches(['"', '\'', ' '])
+            .split(|c: char| !c.is_ascii_digit())
+            .next()
+            .map(str::to_owned)
+    };
+    let is_there =
+        |count: &String| !count.is_empty() && count.parse().is_ok_and(|n: u64| n <= text.len() as u64);
     for key in ["count", "offset", "stride"] {
-        let claims = text.split(&format!("{key}=")).skip(1).filter_map(digits);
-        if let Some(claimed) = claims.into_iter().find(|count| !is_there(count)) {
+        let key_is = format!("{key}=");
+        let mut claims = text.split(&key_is).skip(1).filter_map(digits);
+        if let Some(claimed) = claims.find(|count| !is_there(count)) {
             return Some(format!("it claims a {key} of {claimed}, more than it has characters"));
         }
     }
@@ -189,7 +196,10 @@ mod tests {
         );
         assert!(whole(flat.into_bytes(), Path::new("flat.dae")).is_ok());
         let claim = b"<COLLADA><triangles count=\"4000000000\"/></COLLADA>";
-        assert_eq!(refused(claim, "many.dae"), "it claims a count of 4000000000, more than it has characters");
+        assert_eq!(
+            refused(claim, "many.dae"),
+            "it claims a count of 4000000000, more than it has characters"
+        );
         let names = b"<COLLADA><Name_array count=\"1\">a</Name_array></COLLADA>";
         assert_eq!(refused(names, "names.dae"), "<Name_array> is not read: skeletons are no surfaces");
 

@@ -26,9 +26,8 @@ fn followed(start: &Start, plan: (&Settings, &Approach)) -> Result<(Vec<Sample>,
 fn judged(start: &Start, plan: (&Settings, &Approach), run: &(Vec<Sample>, Summary)) -> Judgement {
     let measure = Measure { tolerance: plan.1.tolerance, size: 1.0, is_balanced: false };
     let mut all = companions(plan.0, plan.1).into_iter();
-    let found = all.find_map(|(settings, approach)| {
-        followed(start, (&closely(&settings, &approach), &approach)).ok()
-    });
+    let found = all
+        .find_map(|(settings, approach)| followed(start, (&closely(&settings, &approach), &approach)).ok());
     let (others, other) = found.unwrap();
     judge((&run.0, &run.1), (&others, &other), &measure)
 }
@@ -43,10 +42,7 @@ fn truth(rows: &[[f64; 2]], between: Between, rate: f64, t: f64) -> [f64; 2] {
             break;
         }
         let slope = if between == Between::Held { 0.0 } else { (u1 - u0) / (t1 - t0) };
-        x = [
-            x[0] + h * (x[1] + h * (u0 / 2.0 + slope * h / 6.0)),
-            x[1] + h * (u0 + slope * h / 2.0),
-        ];
+        x = [x[0] + h * (x[1] + h * (u0 / 2.0 + slope * h / 6.0)), x[1] + h * (u0 + slope * h / 2.0)];
     }
     x
 }
@@ -83,7 +79,9 @@ fn no_run_is_good_that_has_stepped_over_a_pulse() {
         let judgement = judged(&start, (&settings, &approach), &run);
         let mut error: f64 = 0.0;
         for sample in &run.0 {
-            let JointSample::Angle { position, rate: found } = sample.coordinates[0] else { panic!("an angle") };
+            let JointSample::Angle { position, rate: found } = sample.coordinates[0] else {
+                panic!("an angle")
+            };
             let [angle, expected] = truth(&rows, between, rate, sample.t);
             error = error.max((position - angle).abs()).max((found - expected).abs());
         }
