@@ -92,6 +92,7 @@ pub fn posed(model: &Model, rate: f64, random: &mut Random) -> Model {
             rate: (n_rates > 0).then(|| (0..n_rates).map(|_| number(rate * random.signed())).collect()),
             orientation: is_spherical.then(|| random.unit().map(number)),
             is_rough: false,
+            set: Vec::new(),
         };
     }
     model
