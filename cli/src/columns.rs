@@ -69,13 +69,21 @@ pub fn coordinates(model: &Model) -> Vec<Shown> {
 /// Suffix and unit of each number of an output.
 pub(crate) fn output_columns(model: &Model, output: &Output) -> Vec<(&'static str, &'static str)> {
     let columns = output.kind.columns();
-    match output.kind {
-        OutputKind::Driver { driver } => {
-            let is_angle = model.coordinate_kind(model.drivers[driver].coordinate).is_angle();
-            columns.iter().map(|(suffix, _)| (*suffix, if is_angle { "N*m" } else { "N" })).collect()
-        }
-        _ => columns.to_vec(),
-    }
+    let on = match output.kind {
+        OutputKind::Driver { driver } => model.drivers[driver].coordinate,
+        OutputKind::Coupler { coupler } => model.couplers[coupler].second,
+        OutputKind::Spring { force } => match model.forces[force].kind {
+            ForceKind::Spring { on, .. } => on,
+            _ => return columns.to_vec(),
+        },
+        _ => return columns.to_vec(),
+    };
+    // Of an angle it is the first of two units.
+    let of = |unit: &'static str| {
+        let (angular, linear) = unit.split_once(" or ").unwrap_or((unit, unit));
+        if model.coordinate_kind(on).is_angle() { angular } else { linear }
+    };
+    columns.iter().map(|(suffix, unit)| (*suffix, of(unit))).collect()
 }
 
 /// Name and unit of each number of all outputs, in their order.

@@ -118,6 +118,7 @@ pub(crate) fn is_not_unique(model: &Model, output: &OutputKind, number: usize) -
     let owner = match output {
         OutputKind::Reaction { joint } => return not_unique(model, *joint)[number],
         OutputKind::Driver { driver } => RowOwner::Driver(*driver),
+        OutputKind::Coupler { coupler } => RowOwner::Coupler(*coupler),
         _ => return false,
     };
     model.redundant.iter().any(|dropped| dropped.row.owner == owner || dropped.shared_with.contains(&owner))

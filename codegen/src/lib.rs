@@ -294,15 +294,23 @@ fn facts(system: &System) -> Facts {
         OutputKind::Acceleration { .. }
         | OutputKind::Inertial { .. }
         | OutputKind::Reaction { .. }
-        | OutputKind::Driver { .. } => true,
+        | OutputKind::Driver { .. }
+        | OutputKind::Coupler { .. } => true,
         OutputKind::Power => is_driven,
-        OutputKind::Pose { .. } | OutputKind::Velocity { .. } | OutputKind::Energy => false,
+        OutputKind::Pose { .. }
+        | OutputKind::Velocity { .. }
+        | OutputKind::Spring { .. }
+        | OutputKind::Link { .. }
+        | OutputKind::Energy => false,
     };
     let tells_multipliers = |output: &Output| {
         tells_motion(output)
             && matches!(
                 output.kind,
-                OutputKind::Reaction { .. } | OutputKind::Driver { .. } | OutputKind::Power
+                OutputKind::Reaction { .. }
+                    | OutputKind::Driver { .. }
+                    | OutputKind::Coupler { .. }
+                    | OutputKind::Power
             )
     };
     Facts {

@@ -256,6 +256,23 @@ pub enum OutputKind {
         /// Index into [`crate::Model::drivers`].
         driver: usize,
     },
+    /// Torque or force `−λ` with which a coupler acts along its second coordinate, N·m or N; along the first it acts
+    /// with `−ratio` times as much. It loads no bearings: gears that push each other apart do in truth.
+    Coupler {
+        /// Index into [`crate::Model::couplers`].
+        coupler: usize,
+    },
+    /// Torque or force of a spring along its coordinate (N·m or N), `−stiffness` times its deflection, and that, the
+    /// coordinate less its free value (rad or m).
+    Spring {
+        /// Index into [`crate::Model::forces`], of a spring.
+        force: usize,
+    },
+    /// Force with which a link pushes its ends apart, its spring's and its damper's (N), and its length (m).
+    Link {
+        /// Index into [`crate::Model::forces`], of a link.
+        force: usize,
+    },
     /// Kinetic and potential energy, J.
     Energy,
     /// Power of all non-conservative forces, and of drivers and driven bodies, W.
@@ -301,7 +318,9 @@ impl OutputKind {
                 ("torque_g", "N*m"),
                 ("torque_h", "N*m"),
             ],
-            Self::Driver { .. } => &[("", "N*m or N")],
+            Self::Driver { .. } | Self::Coupler { .. } => &[("", "N*m or N")],
+            Self::Spring { .. } => &[("force", "N*m or N"), ("deflection", "rad or m")],
+            Self::Link { .. } => &[("force", "N"), ("length", "m")],
             Self::Energy => &[("kinetic", "J"), ("potential", "J")],
             Self::Power => &[("non_conservative", "W"), ("drivers", "W")],
         }

@@ -247,6 +247,8 @@ pub(crate) struct Output {
     point: Option<Vector>,
     joint: Option<String>,
     driver: Option<String>,
+    coupler: Option<String>,
+    force: Option<String>,
 }
 
 #[derive(JsonSchema)]
@@ -259,6 +261,9 @@ enum OutputKind {
     Inertial,
     Reaction,
     Driver,
+    Coupler,
+    Spring,
+    Link,
     Energy,
     Power,
 }

@@ -49,7 +49,11 @@ impl<T: Number> Lowered<T> {
             row_infos: rows.iter().map(|row| row_info(&moving_bodies, row)).collect(),
             elements: Element::all(model, &places, &scene.joints),
             rotors: Rotor::all(model),
-            outputs: model.outputs.iter().map(|output| Output::new(model, &places, output)).collect(),
+            outputs: model
+                .outputs
+                .iter()
+                .map(|output| Output::new(model, (&places, &scene.joints), output))
+                .collect(),
             size: number(model.size()),
             is_driven: model.is_driven(),
             work,

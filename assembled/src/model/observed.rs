@@ -1,5 +1,6 @@
 //! The numbers of a model file's outputs at a moment.
 
+use crate::model::law::Amount;
 use crate::model::lowered::Lowered;
 use crate::model::motion::{Motion, along_pi};
 use crate::model::outputs::{Quantity, Solution};
@@ -47,7 +48,17 @@ impl<T: Number> Lowered<T> {
                 let [force, torque] = self.reaction(at, *joint, rows, solution.lambda);
                 write(out, &force, torque.as_slice());
             }
-            Quantity::Driver(row) => out[0] = row.map_or(T::zero(), |row| -solution.lambda[row]),
+            Quantity::Elastic(elastic) => {
+                let places = elastic.path.places(&self.scene);
+                let motions = places.map(|place| self.scene.motion(at, place));
+                let (x, rate) =
+                    (elastic.path.value(&self.scene, at), elastic.path.grip(&self.scene, &motions).rate);
+                let value = |amount: &Amount<T>| amount.value(&self.scene.inputs);
+                let deflection = x - value(&elastic.free);
+                out[0] = -value(&elastic.stiffness) * deflection - value(&elastic.damping) * rate;
+                out[1] = if elastic.is_link { x } else { deflection };
+            }
+            Quantity::Load(row) => out[0] = row.map_or(T::zero(), |row| -solution.lambda[row]),
             Quantity::Energy => {
                 let energy = self.energy(at);
                 (out[0], out[1]) = (energy.kinetic, energy.potential);

@@ -1,8 +1,12 @@
 //! What a model file asks for besides the motion: [`gyro_model::OutputKind`].
 
+use crate::model::joint::Joint;
+use crate::model::law::Amount;
+use crate::model::measure::Coordinate;
+use crate::model::path::Path;
 use crate::model::place::{Place, Places, vector};
 use crate::number::Number;
-use gyro_model::{Model, OutputKind, RowOwner};
+use gyro_model::{ForceKind, Model, OutputKind, RowOwner};
 use nalgebra::Vector3;
 
 /// An output; its name is in the description.
@@ -21,8 +25,10 @@ pub(crate) enum Quantity<T> {
     Inertial(Spot<T>),
     /// A joint and its rows.
     Reaction(usize, Vec<usize>),
-    /// The driver's row, unless it was redundant.
-    Driver(Option<usize>),
+    /// The row of a driver or coupler, unless it was redundant.
+    Load(Option<usize>),
+    /// A spring along its coordinate, or a link along its line.
+    Elastic(Elastic<T>),
     Energy,
     Power,
 }
@@ -32,6 +38,17 @@ pub(crate) enum Quantity<T> {
 pub(crate) struct Spot<T> {
     pub(crate) place: Place<T>,
     pub(crate) point: Vector3<T>,
+}
+
+/// `−stiffness (x − free) − damping ẋ` along a path.
+#[derive(Clone, Debug)]
+pub(crate) struct Elastic<T> {
+    pub(crate) path: Path<T>,
+    pub(crate) stiffness: Amount<T>,
+    pub(crate) free: Amount<T>,
+    pub(crate) damping: Amount<T>,
+    /// Whether x is told beside the force, rather than x − free.
+    pub(crate) is_link: bool,
 }
 
 /// What eq. (17) says of a moment.
@@ -44,8 +61,38 @@ pub(crate) struct Solution<'a, T> {
     pub(crate) lambda_nu: T,
 }
 
+impl<T: Number> Elastic<T> {
+    fn new(model: &Model, (places, joints): (&Places<T>, &[Joint<T>]), kind: &ForceKind) -> Self {
+        let amount = |number| Amount::new(model, number);
+        match kind {
+            ForceKind::Link { first, second, stiffness, damping, free_length } => {
+                let end = |(body, point): &(usize, _)| (places.of(*body), vector(model.values(point)));
+                Self {
+                    path: Path::Line([end(first), end(second)]),
+                    stiffness: amount(stiffness),
+                    free: amount(free_length),
+                    damping: amount(damping),
+                    is_link: true,
+                }
+            }
+            ForceKind::Spring { on, stiffness, free } => Self {
+                path: Path::Coordinate(Coordinate::of(&joints[on.joint], on.coordinate)),
+                stiffness: amount(stiffness),
+                free: amount(free),
+                damping: Amount::Constant(T::zero()),
+                is_link: false,
+            },
+            _ => unreachable!("the reader refuses outputs of other forces"),
+        }
+    }
+}
+
 impl<T: Number> Output<T> {
-    pub(crate) fn new(model: &Model, places: &Places<T>, output: &gyro_model::Output) -> Self {
+    pub(crate) fn new(
+        model: &Model,
+        (places, joints): (&Places<T>, &[Joint<T>]),
+        output: &gyro_model::Output,
+    ) -> Self {
         let spot = |body: &usize, point| Spot { place: places.of(*body), point: vector(model.values(point)) };
         let rows_of = |owner| -> Vec<usize> {
             let rows = model.rows().into_iter().enumerate();
@@ -58,7 +105,13 @@ impl<T: Number> Output<T> {
             OutputKind::Inertial { body, point } => Quantity::Inertial(spot(body, point)),
             OutputKind::Reaction { joint } => Quantity::Reaction(*joint, rows_of(RowOwner::Joint(*joint))),
             OutputKind::Driver { driver } => {
-                Quantity::Driver(rows_of(RowOwner::Driver(*driver)).first().copied())
+                Quantity::Load(rows_of(RowOwner::Driver(*driver)).first().copied())
+            }
+            OutputKind::Coupler { coupler } => {
+                Quantity::Load(rows_of(RowOwner::Coupler(*coupler)).first().copied())
+            }
+            OutputKind::Spring { force } | OutputKind::Link { force } => {
+                Quantity::Elastic(Elastic::new(model, (places, joints), &model.forces[*force].kind))
             }
             OutputKind::Energy => Quantity::Energy,
             OutputKind::Power => Quantity::Power,

@@ -162,22 +162,8 @@ impl Forces {
 
     /// Between two points: along the line from the first to the second.
     fn add_link(&mut self, system: &mut System, kind: &ForceKind) {
-        let ForceKind::Link { first, second, stiffness, damping, free_length } = kind else { return };
-        let ends = [first, second].map(|(body, point)| PointOfBody::new(system, *body, point));
-        let [stiffness, damping, free] = numbers(system, [stiffness, damping, free_length]);
+        let Some(Pull { ends, unit, rate, drag, stored, force, .. }) = Pull::of(system, kind) else { return };
         let graph = &mut system.graph;
-        let (d, d_dot) = (
-            graph.sub_vec(&ends[1].position, &ends[0].position),
-            graph.sub_vec(&ends[1].velocity, &ends[0].velocity),
-        );
-        let square = graph.dot(&d, &d);
-        let length = graph.sqrt(square);
-        let inverse = graph.recip(length);
-        let unit = graph.scale_vec(inverse, &d);
-        let rate = graph.dot(&unit, &d_dot);
-        let (elastic, stored) = spring(graph, stiffness, length, free);
-        let drag = graph.mul(damping, rate);
-        let force = graph.sub(elastic, drag);
         let on_second = graph.scale_vec(force, &unit);
         let on_first = graph.neg_vec(&on_second);
         let loss = graph.mul(drag, rate);
@@ -224,6 +210,54 @@ impl Forces {
             }
         }
         power
+    }
+}
+
+/// What a link does along its line.
+struct Pull {
+    ends: [PointOfBody; 2],
+    /// From the first end to the second.
+    unit: Vec3,
+    length: ExprId,
+    rate: ExprId,
+    drag: ExprId,
+    stored: ExprId,
+    force: ExprId,
+}
+
+impl Pull {
+    fn of(system: &mut System, kind: &ForceKind) -> Option<Self> {
+        let ForceKind::Link { first, second, stiffness, damping, free_length } = kind else { return None };
+        let ends = [first, second].map(|(body, point)| PointOfBody::new(system, *body, point));
+        let [stiffness, damping, free] = numbers(system, [stiffness, damping, free_length]);
+        let graph = &mut system.graph;
+        let (d, d_dot) = (
+            graph.sub_vec(&ends[1].position, &ends[0].position),
+            graph.sub_vec(&ends[1].velocity, &ends[0].velocity),
+        );
+        let square = graph.dot(&d, &d);
+        let length = graph.sqrt(square);
+        let inverse = graph.recip(length);
+        let unit = graph.scale_vec(inverse, &d);
+        let rate = graph.dot(&unit, &d_dot);
+        let (elastic, stored) = spring(graph, stiffness, length, free);
+        let drag = graph.mul(damping, rate);
+        let force = graph.sub(elastic, drag);
+        Some(Self { ends, unit, length, rate, drag, stored, force })
+    }
+}
+
+/// Force and deflection of a spring, force and length of a link.
+pub fn elastic(system: &mut System, force: usize) -> [ExprId; 2] {
+    let kind = &system.model.forces[force].kind;
+    match kind {
+        ForceKind::Spring { on, stiffness, free } => {
+            let (x, [stiffness, free]) =
+                (joint_coordinate::value(system, *on), numbers(system, [stiffness, free]));
+            let (force, _) = spring(&mut system.graph, stiffness, x, free);
+            [force, system.graph.sub(x, free)]
+        }
+        _ => Pull::of(system, kind).map_or([Graph::ZERO; 2], |pull| [pull.force, pull.length]),
     }
 }
 

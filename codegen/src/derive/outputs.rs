@@ -1,7 +1,7 @@
 //! The outputs that the model file asks for, in terms of the state, of [`Symbol::Acceleration`] and of the multipliers.
 
 use crate::derive::dynamics::Dynamics;
-use crate::derive::forces::PointOfBody;
+use crate::derive::forces::{self, PointOfBody};
 use crate::derive::joint_coordinate::Load;
 use crate::derive::kinematics::Kinematics;
 use crate::derive::system::System;
@@ -70,6 +70,12 @@ fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<Exp
             .rows_of(RowOwner::Driver(*driver))
             .map(|row| system.graph.neg(sources.lambda[row]))
             .collect(),
+        OutputKind::Coupler { coupler } => {
+            // A row that was dropped has no multiplier.
+            let rows = system.model.rows_of(RowOwner::Coupler(*coupler));
+            vec![rows.fold(Graph::ZERO, |sum, row| system.graph.sub(sum, sources.lambda[row]))]
+        }
+        OutputKind::Spring { force } | OutputKind::Link { force } => forces::elastic(system, *force).to_vec(),
         OutputKind::Energy => vec![sources.dynamics.kinetic, sources.dynamics.potential],
         OutputKind::Power => vec![sources.dynamics.power, drivers_power(system, sources)],
     }

@@ -17,10 +17,11 @@ const DRIVER_KEYS: [&str; 4] = ["name", "joint", "coordinate", "motion"];
 /// index.
 pub(super) const NO_COORDINATE: JointCoordinate = JointCoordinate { joint: usize::MAX, coordinate: 0 };
 
-/// Reads all couplers.
+/// Reads all couplers. Their names are with the reader before any output refers to them.
 pub(super) fn couplers(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Coupler> {
     let tables = tables::tables(reader, page, "coupler");
     let names = tables::names(reader, &tables, Owner::Coupler, "coupler");
+    reader.couplers.clone_from(&names);
     let named = tables.iter().zip(names).enumerate();
     named
         .map(|(index, ((_, table), name))| {

@@ -6,9 +6,9 @@ use super::reader::Reader;
 use super::section::{self, Section};
 use super::{references, tables};
 use crate::validate::Owner;
-use crate::{Number, Output, OutputKind};
+use crate::{Force, Number, Output, OutputKind};
 
-const KEYS: [&str; 6] = ["name", "kind", "body", "point", "joint", "driver"];
+const KEYS: [&str; 8] = ["name", "kind", "body", "point", "joint", "driver", "coupler", "force"];
 
 /// The kinds in the model file.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -19,17 +19,23 @@ enum Kind {
     Inertial,
     Reaction,
     Driver,
+    Coupler,
+    Spring,
+    Link,
     Energy,
     Power,
 }
 
-const KINDS: [(&str, Kind); 8] = [
+const KINDS: [(&str, Kind); 11] = [
     ("pose", Kind::Pose),
     ("velocity", Kind::Velocity),
     ("acceleration", Kind::Acceleration),
     ("inertial", Kind::Inertial),
     ("reaction", Kind::Reaction),
     ("driver", Kind::Driver),
+    ("coupler", Kind::Coupler),
+    ("spring", Kind::Spring),
+    ("link", Kind::Link),
     ("energy", Kind::Energy),
     ("power", Kind::Power),
 ];
@@ -41,24 +47,31 @@ impl Kind {
             Self::Pose | Self::Velocity | Self::Acceleration | Self::Inertial => &["body", "point"],
             Self::Reaction => &["joint"],
             Self::Driver => &["driver"],
+            Self::Coupler => &["coupler"],
+            Self::Spring | Self::Link => &["force"],
             Self::Energy | Self::Power => &[],
         }
     }
 }
 
 /// Reads all outputs.
-pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Output> {
+pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, forces: &[Force]) -> Vec<Output> {
     let tables = tables::tables(reader, page, "output");
     let names = tables::names(reader, &tables, Owner::Output, "output");
     let named = tables.iter().zip(names).enumerate();
     named
         .map(|(index, ((_, table), name))| {
-            output(reader, index, table, name.unwrap_or_else(|| format!("output {}", index + 1)))
+            output(reader, (index, forces), table, name.unwrap_or_else(|| format!("output {}", index + 1)))
         })
         .collect()
 }
 
-fn output(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: String) -> Output {
+fn output(
+    reader: &mut Reader<'_>,
+    (index, forces): (usize, &[Force]),
+    table: &DeTable<'_>,
+    name: String,
+) -> Output {
     let title = format!("output `{name}`");
     let section = Section::open(reader, Owner::Output(index), &title, table, &KEYS);
     let kind = section.require_choice(reader, "kind", &title, ("kind of output", &KINDS));
@@ -73,6 +86,15 @@ fn output(reader: &mut Reader<'_>, index: usize, table: &DeTable<'_>, name: Stri
         },
         Some(Kind::Driver) => OutputKind::Driver {
             driver: references::driver(reader, &section, &title).unwrap_or(references::NOTHING),
+        },
+        Some(Kind::Coupler) => OutputKind::Coupler {
+            coupler: references::coupler(reader, &section, &title).unwrap_or(references::NOTHING),
+        },
+        Some(Kind::Spring) => OutputKind::Spring {
+            force: references::force(reader, &section, &title, forces).unwrap_or(references::NOTHING),
+        },
+        Some(Kind::Link) => OutputKind::Link {
+            force: references::force(reader, &section, &title, forces).unwrap_or(references::NOTHING),
         },
         Some(Kind::Power) => OutputKind::Power,
         Some(Kind::Energy) | None => OutputKind::Energy,

@@ -60,7 +60,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         between.push(Between::default());
         forces.push(contact.own_force());
     }
-    let mut outputs = outputs::read(reader, &page);
+    let mut outputs = outputs::read(reader, &page, &forces);
     contacts::loads(reader, &mut contacts, &joints, &mut outputs);
     let controllers = controllers::read(reader, &page, &outputs);
     let events = events::read(reader, &page, &outputs);

@@ -134,9 +134,7 @@ fn points(model: &mut Model, body: usize) -> Vec<&mut Vector> {
         | OutputKind::Velocity { body, point }
         | OutputKind::Acceleration { body, point }
         | OutputKind::Inertial { body, point } => Some((*body, point)),
-        OutputKind::Reaction { .. } | OutputKind::Driver { .. } | OutputKind::Energy | OutputKind::Power => {
-            None
-        }
+        _ => None,
     });
     let others = of_forces.chain(of_outputs).filter(|(of, _)| *of == body).map(|(_, point)| point);
     of_shapes.chain(of_joints).chain(others).collect()

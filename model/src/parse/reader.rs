@@ -33,6 +33,8 @@ pub(super) struct Reader<'t> {
     pub(super) joints: Vec<NamedJoint>,
     /// Names of the model file's drivers; outputs refer to them.
     pub(super) drivers: Vec<Option<String>>,
+    /// Names of its couplers, for the same.
+    pub(super) couplers: Vec<Option<String>>,
     /// Names of joints, couplers, drivers and outputs so far, with their places and what they are.
     taken: HashMap<String, (Range<usize>, &'static str)>,
 }
@@ -74,6 +76,7 @@ impl<'t> Reader<'t> {
             bodies: Vec::new(),
             joints: Vec::new(),
             drivers: Vec::new(),
+            couplers: Vec::new(),
             taken: HashMap::new(),
         }
     }

@@ -3,7 +3,7 @@
 use super::names;
 use super::reader::{NamedJoint, Reader};
 use super::section::{Item, Section};
-use crate::{CoordinateKind, JointCoordinate, JointKind};
+use crate::{CoordinateKind, Force, JointCoordinate, JointKind};
 
 /// Stands for a thing that the model file does not name correctly: the mistake is reported, and nothing has this index.
 pub(super) const NOTHING: usize = usize::MAX;
@@ -24,6 +24,23 @@ pub(super) fn joint(reader: &mut Reader<'_>, section: &Section<'_>, title: &str)
 pub(super) fn driver(reader: &mut Reader<'_>, section: &Section<'_>, title: &str) -> Option<usize> {
     let known = reader.drivers.clone();
     named(reader, section, "driver", title, &known)
+}
+
+/// Index of the coupler that a section names under `coupler`.
+pub(super) fn coupler(reader: &mut Reader<'_>, section: &Section<'_>, title: &str) -> Option<usize> {
+    let known = reader.couplers.clone();
+    named(reader, section, "coupler", title, &known)
+}
+
+/// Index of the force that a section names under `force`.
+pub(super) fn force(
+    reader: &mut Reader<'_>,
+    section: &Section<'_>,
+    title: &str,
+    forces: &[Force],
+) -> Option<usize> {
+    let known: Vec<_> = forces.iter().map(|force| Some(force.name.clone())).collect();
+    named(reader, section, "force", title, &known)
 }
 
 /// The coordinate that a section names under `joint` and, where the joint has several, `coordinate`.

@@ -173,6 +173,22 @@ fn idle_force(model: &Model, index: usize) -> Option<Problem> {
 /// An output of a body that does not move, or a driver's where it has none.
 fn fixed_output(model: &Model, index: usize) -> Option<Problem> {
     let output = &model.outputs[index];
+    if let (OutputKind::Spring { force } | OutputKind::Link { force }) = output.kind {
+        let (force, is_spring) = (model.forces.get(force)?, matches!(output.kind, OutputKind::Spring { .. }));
+        let fits = match force.kind {
+            ForceKind::Spring { .. } => is_spring,
+            ForceKind::Link { .. } => !is_spring,
+            _ => false,
+        };
+        let kind = if is_spring { "spring" } else { "link" };
+        return (!fits).then(|| Problem {
+            place: Place { owner: Owner::Output(index), key: "force" },
+            also: None,
+            message: format!("output `{}` is of a {kind}, and `{}` is none", output.name, force.name),
+            label: format!("not a {kind}"),
+            help: format!("name a [[force]] of kind \"{kind}\""),
+        });
+    }
     let (OutputKind::Pose { body, .. }
     | OutputKind::Velocity { body, .. }
     | OutputKind::Acceleration { body, .. }

@@ -18,6 +18,9 @@ impl Page {
                 _ => self.along_coordinate(kind),
             };
             if let Some(keys) = keys {
+                if matches!(kind, "spring" | "link") {
+                    self.elastic.push((format!("f{index}"), kind));
+                }
                 self.elements += &format!("\n[[force]]\nname = \"f{index}\"\nkind = \"{kind}\"\n{keys}");
             }
         }
@@ -29,6 +32,7 @@ impl Page {
         for (index, (joint, coordinate)) in self.coordinates().into_iter().enumerate() {
             let (stiffness, free) =
                 (self.rotors.pick(&["0.3", "2", "7.5"]), self.rotors.pick(&["0", "-0.4", "1.1"]));
+            self.elastic.push((format!("h{index}"), "spring"));
             self.elements += &format!(
                 "\n[[force]]\nname = \"h{index}\"\nkind = \"spring\"\njoint = \"j{joint}\"\ncoordinate = \
                  {coordinate:?}\nstiffness = {stiffness}\nfree = {free}\n"
@@ -143,7 +147,20 @@ impl Page {
         (!moving.is_empty()).then(|| self.dice.pick(&moving))
     }
 
-    /// Outputs of all kinds.
+    /// What some couplers, springs and links do. Other dice than those of the rest decide on it.
+    pub fn elastic_outputs(&mut self) {
+        let couplers = (0..self.n_couplers).map(|index| ("coupler", "coupler", format!("c{index}")));
+        let elastic = self.elastic.iter().map(|(name, kind)| (*kind, "force", name.clone()));
+        let all: Vec<_> = couplers.chain(elastic).collect();
+        for (index, (kind, key, name)) in all.into_iter().enumerate() {
+            if self.rotors.once_in(3) {
+                self.elements +=
+                    &format!("\n[[output]]\nname = \"e{index}\"\nkind = \"{kind}\"\n{key} = \"{name}\"\n");
+            }
+        }
+    }
+
+    /// Outputs of the kinds that there are in every mechanism, and of joints and drivers.
     pub fn outputs(&mut self) {
         for index in 0..self.dice.pick(&[0, 0, 1, 2, 3]) {
             let kinds =

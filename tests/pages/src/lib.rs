@@ -59,6 +59,7 @@ fn text(mut page: Page) -> String {
     if page.is_closed && page.rotors.once_in(3) {
         page.hold_all();
     }
+    page.elastic_outputs();
     page.read();
     page.text()
 }

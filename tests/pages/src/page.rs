@@ -88,6 +88,8 @@ pub struct Page {
     /// Whether something will close loops or couple coordinates: then starts are guesses.
     pub is_closed: bool,
     pub n_drivers: usize,
+    /// Springs and links: names and kinds.
+    pub elastic: Vec<(String, &'static str)>,
     pub n_couplers: usize,
     /// Frames with long numbers.
     pub n_rough: usize,
@@ -115,6 +117,7 @@ impl Page {
             freedoms: BTreeMap::new(),
             is_closed,
             n_drivers: 0,
+            elastic: Vec::new(),
             n_couplers: 0,
             n_rough: 0,
         }

@@ -14,7 +14,7 @@ use gyro_model::{Number, OutputKind};
 pub fn outputs<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let motion = Motion::new(case)?;
     let tells_multipliers = case.model.outputs.iter().any(|output| match output.kind {
-        OutputKind::Reaction { .. } | OutputKind::Driver { .. } => true,
+        OutputKind::Reaction { .. } | OutputKind::Driver { .. } | OutputKind::Coupler { .. } => true,
         OutputKind::Power => case.model.is_driven(),
         _ => false,
     });

@@ -96,6 +96,29 @@ impl<F: Field> Evaluation<'_, F> {
         Some(push - damping * slope * self.coordinate_rate(*on))
     }
 
+    /// Of a spring its force and how far it is from where it is free; of a link its thrust and its length.
+    pub(super) fn elastic(&self, force: usize) -> Option<[F; 2]> {
+        let numbers = match &self.textbook.model.forces[force].kind {
+            ForceKind::Spring { on, stiffness, free } => {
+                let stretch = self.coordinate(*on, &self.still)? - self.scope.number(free);
+                [-(self.scope.number(stiffness) * &stretch), stretch]
+            }
+            ForceKind::Link { first, second, stiffness, damping, free_length } => {
+                let [from, to] = [first, second].map(|(body, point)| {
+                    let (moving, point) = (&self.moving[*body], self.scope.vector(point));
+                    (moving.pose.point(&point), moving.velocity(&point))
+                });
+                let (line, drift) = (to.0 - from.0, to.1 - from.1);
+                let length = self.scope.sqrt(&line.dot(&line))?;
+                let growth = line.dot(&drift) * length.reciprocal()?;
+                let pull = self.scope.number(stiffness) * (length.clone() - self.scope.number(free_length));
+                [-(pull + self.scope.number(damping) * growth), length]
+            }
+            _ => return None,
+        };
+        Some(numbers.map(|number| number.value))
+    }
+
     /// Along the line between two points.
     fn add_link(&self, forces: &mut Forces<F>, kind: &ForceKind) -> Option<()> {
         let ForceKind::Link { first, second, stiffness, damping, free_length } = kind else { return None };

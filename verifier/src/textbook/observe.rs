@@ -110,7 +110,9 @@ impl<F: Field> Evaluation<'_, F> {
                 let [force, torque] = self.reaction(*joint, lambda)?;
                 values(force, &torque.0)
             }
-            OutputKind::Driver { driver } => vec![self.driver(*driver, lambda)],
+            OutputKind::Driver { driver } => vec![self.load(RowOwner::Driver(*driver), lambda)],
+            OutputKind::Coupler { coupler } => vec![self.load(RowOwner::Coupler(*coupler), lambda)],
+            OutputKind::Spring { force } | OutputKind::Link { force } => self.elastic(*force)?.to_vec(),
             OutputKind::Energy => self.energy()?.to_vec(),
             OutputKind::Power => self.power(lambda, accelerations)?.to_vec(),
         })
@@ -162,8 +164,8 @@ impl<F: Field> Evaluation<'_, F> {
     }
 
     /// `−λ` of a driver's row; zero where the row is redundant.
-    fn driver(&self, driver: usize, lambda: &[F]) -> F {
-        let rows = self.textbook.model.rows_of(RowOwner::Driver(driver));
+    fn load(&self, owner: RowOwner, lambda: &[F]) -> F {
+        let rows = self.textbook.model.rows_of(owner);
         rows.fold(self.scope.zero.value.clone(), |sum, row| sum.sub(&lambda[row]))
     }
 }
