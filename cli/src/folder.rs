@@ -30,6 +30,11 @@ impl Folder {
     }
 }
 
+/// Where a file goes that `--out` names, or the folder for it.
+pub(crate) fn file(out: &Path, name: &str) -> PathBuf {
+    if out.is_dir() { out.join(name) } else { out.to_path_buf() }
+}
+
 impl Drop for Folder {
     fn drop(&mut self) {
         // Only what is empty goes.

@@ -7,7 +7,7 @@ use crate::places::{Place, all_model_files, listing, module_path, place_of};
 use crate::verify::proved;
 use crate::words::count;
 use crate::write::{self, Known};
-use crate::{files, progress, remarks, scene};
+use crate::{files, folder, progress, remarks, scene};
 use gyro_codegen::Module;
 use gyro_verifier::constants::Constants;
 use rayon::prelude::*;
@@ -54,7 +54,8 @@ fn outputs(args: &GenerateArgs, places: &[Place]) -> Result<Outputs, Failure> {
     {
         let module = made?;
         let place = place_of(places, page).filter(|_| args.out.is_none());
-        let path = args.out.clone().or_else(|| module_path(places, page, &module.name));
+        let wished = args.out.as_ref().map(|out| folder::file(out, &format!("{}.rs", module.name)));
+        let path = wished.or_else(|| module_path(places, page, &module.name));
         let sheet = place.map(|place| place.sheet(&module.name));
         let first = sheet
             .clone()

@@ -45,6 +45,9 @@ const HOLDS: f64 = 0.1;
 /// Times at which that is looked at, evenly spread over the run.
 const CHECKS: usize = 16;
 
+/// Powers of a matrix are summed as long as its elements are below this: the exponential of larger ones never ends.
+const LONGEST: f64 = 1e15;
+
 /// Step of the differences: rad for angles, rad/s for rates. Accelerations are quadratic in the rates, so there the
 /// step is free; for angles the truncation, about h⁶/140, and the rounding, 1e-14/h, are both below 1e-12.
 const ANGLE_STEP: f64 = 0.01;
@@ -92,6 +95,9 @@ impl Linear {
 
     /// The angles at so many times, `interval` apart from zero on; says why linear theory does not hold so long.
     pub(crate) fn response(&self, model: &Model, interval: f64, n_times: usize) -> Result<Response, String> {
+        if interval * self.a.amax().max(self.f0.amax()) > LONGEST {
+            return Err(format!("{interval:?} s between samples are too long for it"));
+        }
         self.refuse_growth(interval * n_times as f64)?;
         let mut angles = vec![Vec::with_capacity(n_times); self.joints.len()];
         let mut checked = Vec::new();

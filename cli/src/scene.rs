@@ -41,6 +41,8 @@ pub(crate) struct Scene {
     pub(crate) proves: bool,
     /// Whether the run is compared with other ones of the same mechanism.
     pub(crate) has_companions: bool,
+    /// How the names of its files begin: a linearisation leaves those of a whole run alone.
+    pub(crate) results: String,
 }
 
 impl Scene {
@@ -83,6 +85,7 @@ impl Scene {
             chosen,
             offers,
             is_balanced: is_balanced(&model, &start.inputs),
+            results: format!("{}{}", model.name, if args.linearize.is_some() { "-linearized" } else { "" }),
             model,
             start,
             moved,

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::scene::Scene;
 use crate::verdict::Outcome;
 use crate::write::{self, Known};
-use crate::{remarks, simulate, words};
+use crate::{folder, remarks, simulate, words};
 use gyro_assembled::Recursive;
 use gyro_model::{Model, Output, OutputKind};
 use gyro_runner::{Approach, Coordinates, Correction, Integrator};
@@ -50,10 +50,12 @@ struct Written {
 fn written(args: &ShowArgs) -> Result<Written, Failure> {
     refuse_other_results(&args.simulate)?;
     let first = scene(&args.simulate)?;
-    let path = args.simulate.out.clone().unwrap_or_else(|| {
-        let name = &first.model.name;
-        Path::new("out").join(name).join(format!("{name}.html"))
-    });
+    let name = &first.model.name;
+    let file_name = format!("{name}.html");
+    let path = match &args.simulate.out {
+        Some(out) => folder::file(out, &file_name),
+        None => Path::new("out").join(name).join(file_name),
+    };
     // A place that cannot be used is found out before the run.
     write::check(&path, Known::Mark(gyro_show::MARK))?;
     let mut looks = vec![meshes::read(&first.model, &args.simulate.model)?];

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 /// Simulates a model, prints a summary and writes its files.
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let mut scene = Scene::new(args)?;
-    let opened = folder(args, &scene.model.name)?;
+    let opened = folder(args, &scene)?;
     let folder = opened.as_ref().map(Folder::path);
     let mut outcome = Outcome::default();
     match run(&mut scene, &mut outcome) {
@@ -182,12 +182,13 @@ fn assembled(scene: &Scene, form: Form, tell: &mut dyn FnMut(Event<'_>)) -> Resu
 }
 
 /// Where files go, if any are to be written; a place that cannot be used is found out before the run.
-fn folder(args: &SimulateArgs, name: &str) -> Result<Option<Folder>, Failure> {
+fn folder(args: &SimulateArgs, scene: &Scene) -> Result<Option<Folder>, Failure> {
     let folder = match &args.out {
         Some(folder) => folder.clone(),
         None if args.json => return Ok(None),
-        None => Path::new("out").join(name),
+        None => Path::new("out").join(&scene.model.name),
     };
+    let name = &scene.results;
     let opened = Folder::open(&folder)?;
     let files = plot::NAMES.iter().map(|plot| plot_path(name, plot, &folder));
     files
@@ -219,7 +220,7 @@ fn write_files(scene: &Scene, outcome: &Outcome, folder: &Path) -> Result<Vec<Pa
         return Ok(written);
     }
     for (name, svg) in plot::pages(model, samples).map_err(Failure::Run)? {
-        let path = plot_path(&model.name, name, folder);
+        let path = plot_path(&scene.results, name, folder);
         write::write(&path, &svg, Known::Record)?;
         written.push(path);
     }
@@ -227,7 +228,7 @@ fn write_files(scene: &Scene, outcome: &Outcome, folder: &Path) -> Result<Vec<Pa
 }
 
 fn write_table(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<PathBuf, Failure> {
-    let path = table_path(&scene.model.name, folder);
+    let path = table_path(&scene.results, folder);
     let columns = columns::columns(&scene.model, &scene.start, samples);
     write::write(&path, columns::text(&columns), Known::Record)?;
     Ok(path)
@@ -235,7 +236,7 @@ fn write_table(scene: &Scene, samples: &[Sample], folder: &Path) -> Result<PathB
 
 /// Beside the samples, where anything is looked for; an earlier list would belie a run without.
 fn write_events(scene: &Scene, outcome: &Outcome, folder: &Path) -> Result<Option<PathBuf>, Failure> {
-    let path = events_path(&scene.model.name, folder);
+    let path = events_path(&scene.results, folder);
     let Start { watches, contacts, paths, .. } = &scene.start;
     if watches.is_empty() && contacts.is_empty() && paths.is_empty() {
         write::remove(&path);
@@ -246,7 +247,7 @@ fn write_events(scene: &Scene, outcome: &Outcome, folder: &Path) -> Result<Optio
 }
 
 fn remove_plots(scene: &Scene, folder: &Path) {
-    plot::NAMES.iter().for_each(|name| write::remove(&plot_path(&scene.model.name, name, folder)));
+    plot::NAMES.iter().for_each(|name| write::remove(&plot_path(&scene.results, name, folder)));
 }
 
 /// After an interruption: the files and the summary of the part that was computed.

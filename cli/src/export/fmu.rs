@@ -6,6 +6,7 @@ use crate::columns;
 use crate::contacts;
 use crate::controllers;
 use crate::failure::Failure;
+use crate::folder;
 use crate::generate::{Asked, modules};
 use crate::paths;
 use crate::progress::Spinner;
@@ -21,8 +22,9 @@ use zip::{CompressionMethod, ZipWriter};
 
 /// Writes the archive.
 pub(super) fn fmu(args: &FmuArgs) -> Result<(), Failure> {
-    write::check(&args.out, Known::Record)?;
     let model = scene::read(&args.model)?;
+    let out = &folder::file(&args.out, &format!("{}.fmu", model.name));
+    write::check(out, Known::Record)?;
     controllers::say_left_out(&model, "the exported unit");
     contacts::say_left_out(&model, "the exported unit");
     paths::refuse(&model, "an exported unit")?;
@@ -54,9 +56,9 @@ pub(super) fn fmu(args: &FmuArgs) -> Result<(), Failure> {
         .map_err(|e| Failure::Usage(format!("{}: no FMU can be made: {e}", args.model.display())))?;
     let library = if args.sources_only { None } else { Some(library(&unit)?) };
     let archive = archive(&unit, library.as_deref())
-        .map_err(|e| Failure::Run(format!("{}: {e}", args.out.display())))?;
-    let is_new = write::write(&args.out, archive, Known::Record)?;
-    say(&format!("{} {}", if is_new { "wrote" } else { "fresh already:" }, args.out.display()));
+        .map_err(|e| Failure::Run(format!("{}: {e}", out.display())))?;
+    let is_new = write::write(out, archive, Known::Record)?;
+    say(&format!("{} {}", if is_new { "wrote" } else { "fresh already:" }, out.display()));
     Ok(())
 }
 
