@@ -2,6 +2,7 @@
 
 use crate::args::{NewArgs, Template};
 use crate::failure::Failure;
+use crate::folder;
 use crate::invocation::program;
 use crate::write::unwritable;
 use std::fs::OpenOptions;
@@ -22,7 +23,8 @@ impl Template {
 
 /// Writes the file, and says what to do with it.
 pub(crate) fn new(args: &NewArgs) -> Result<(), Failure> {
-    let path = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.toml", args.name)));
+    let name = format!("{}.toml", args.name);
+    let path = args.out.as_ref().map_or_else(|| PathBuf::from(&name), |out| folder::file(out, &name));
     let text = args.template.text().replace("\"NAME\"", &format!("{:?}", args.name));
     // Only the name can be wrong.
     if let Err(mistakes) = gyro_model::read("", &text) {

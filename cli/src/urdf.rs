@@ -21,6 +21,7 @@ mod wrenches;
 use crate::args::ImportArgs;
 use crate::failure::Failure;
 use crate::files;
+use crate::folder;
 use crate::invocation;
 use crate::words::{capped, count};
 use crate::write::{self, Known};
@@ -28,7 +29,7 @@ use gyro_model::Model;
 use merge::Root;
 use std::fmt::Write as _;
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How imported model files begin.
 const MARKS: [&str; 3] =
@@ -62,7 +63,7 @@ struct Wishes<'a> {
 
 /// Writes the model file and says what has no counterpart on it.
 pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
-    let out = args.out.clone().unwrap_or_else(|| args.file.with_extension("toml"));
+    let out = place(args);
     if out.exists() && !args.force {
         let out = out.display();
         return Err(Failure::Usage(format!(
@@ -81,6 +82,13 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Where the model file goes.
+fn place(args: &ImportArgs) -> PathBuf {
+    let beside = args.file.with_extension("toml");
+    let name = beside.file_name().unwrap_or_default().to_string_lossy();
+    args.out.as_ref().map_or_else(|| beside.clone(), |out| folder::file(out, &name))
+}
+
 /// The model file and what is not in it.
 pub(crate) fn converted(args: &ImportArgs, tool: &str) -> Result<(String, Vec<String>), Failure> {
     let file = args.file.display().to_string();
@@ -92,7 +100,8 @@ pub(crate) fn converted(args: &ImportArgs, tool: &str) -> Result<(String, Vec<St
     let root = if args.floating { Root::Floating } else { Root::Fixed };
     let shown = args.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let ImportArgs { motors, armature, limits, as_written, density, .. } = *args;
-    let folder = args.out.as_ref().unwrap_or(&args.file).parent();
+    let out = place(args);
+    let folder = out.parent();
     let (wrenches, ignored, frames) = (&args.wrenches, &args.ignore, &args.frames);
     let wishes = Wishes {
         root,
