@@ -97,7 +97,7 @@ impl OutputKind {
             | Self::Velocity { point, .. }
             | Self::Acceleration { point, .. }
             | Self::Inertial { point, .. } => Some(point),
-            Self::Reaction { .. } | Self::Driver { .. } | Self::Energy | Self::Power => None,
+            _ => None,
         }
     }
 }

@@ -173,7 +173,7 @@ fn idle_force(model: &Model, index: usize) -> Option<Problem> {
 /// An output of a body that does not move, or a driver's where it has none.
 fn fixed_output(model: &Model, index: usize) -> Option<Problem> {
     let output = &model.outputs[index];
-    if let (OutputKind::Spring { force } | OutputKind::Link { force }) = output.kind {
+    if let OutputKind::Spring { force } | OutputKind::Link { force } = output.kind {
         let (force, is_spring) = (model.forces.get(force)?, matches!(output.kind, OutputKind::Spring { .. }));
         let fits = match force.kind {
             ForceKind::Spring { .. } => is_spring,
