@@ -55,8 +55,8 @@ pub(super) fn fmu(args: &FmuArgs) -> Result<(), Failure> {
     let unit = written(&model, &module.code, &settings)
         .map_err(|e| Failure::Usage(format!("{}: no FMU can be made: {e}", args.model.display())))?;
     let library = if args.sources_only { None } else { Some(library(&unit)?) };
-    let archive = archive(&unit, library.as_deref())
-        .map_err(|e| Failure::Run(format!("{}: {e}", out.display())))?;
+    let archive =
+        archive(&unit, library.as_deref()).map_err(|e| Failure::Run(format!("{}: {e}", out.display())))?;
     let is_new = write::write(out, archive, Known::Record)?;
     say(&format!("{} {}", if is_new { "wrote" } else { "fresh already:" }, out.display()));
     Ok(())

@@ -211,7 +211,7 @@ fn robot(rng: &mut ChaCha8Rng, taken: Taken) -> Robot {
         "a & b\n",
         "<?xml version=\"1.0\"?>\n",
     ];
-    parts.extend(odd.choose_multiple(rng, 2));
+    parts.extend(odd.sample(rng, 2));
     parts.shuffle(rng);
     let joints_text: String = order.iter().map(|index| joints[*index].text.as_str()).collect();
     let heads = [

@@ -197,6 +197,7 @@ fn whole_runs_have_the_derivatives_of_packs() {
         blocks: vec![0],
         starts: rows.iter().map(|row| Ok(of_row(row))).collect(),
         slopes: vec![StartSlopes::Of(slopes); 2],
+        ..Unit::default()
     };
     let whole = sensitive(&job, &unit, false);
     let nearby = StartSlopes::Impossible("no start\nnearby".to_owned());
