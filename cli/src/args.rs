@@ -257,7 +257,7 @@ pub struct ImportArgs {
     /// directions close to axes, which are otherwise taken for these
     #[arg(long)]
     pub(crate) as_written: bool,
-    /// Weigh the shapes of links whose mass or inertia is missing, or an inertia that no body has, at this density, kg/m3
+    /// Weigh the shapes of links whose mass or inertia is missing, or whose inertia no body has, at this density, kg/m3
     #[arg(long, value_name = "DENSITY", value_parser = density)]
     pub(crate) density: Option<f64>,
     /// Leave these elements out, though the robot may be another mechanism without them

@@ -1,5 +1,5 @@
-//! Unstable equilibria: starts at rest that nothing accelerates, from which every disturbance grows. What a run makes of
-//! one is decided by rounding, in each engine by another.
+//! Unstable equilibria: starts at rest that nothing accelerates, from which every disturbance grows. What a run makes
+//! of one is decided by rounding, in each engine by another.
 
 use crate::scene::{self, Scene};
 use crate::words::number;

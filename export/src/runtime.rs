@@ -74,6 +74,7 @@ pub(crate) const SOLVER_HEADER: &str = include_str!("../c/solver/solver.h");
 /// The solver.
 pub(crate) const SOLVER: &[&str] = &[
     include_str!("../c/solver/methods_head.c"),
+    include_str!("../c/solver/orientations.c"),
     include_str!("../c/solver/rk4.c"),
     include_str!("../c/solver/tsit5.c"),
     include_str!("../c/solver/dop853.c"),

@@ -29,8 +29,8 @@ pub struct Approach {
     /// Whether a run by an explicit method ends where it turns out to be stiff, and says so
     /// ([`Event::Stiff`](crate::Event::Stiff)), so that it can be made by another method.
     pub leaves_stiff: bool,
-    /// Whether steps of fixed length end at the knots of inputs and of motions, with each input as it is in the middle of
-    /// a step: for companions, which see what other steps may step over.
+    /// Whether steps of fixed length end at the knots of inputs and of motions, with each input as it is in the middle
+    /// of a step: for companions, which see what other steps may step over.
     pub meets_knots: bool,
 }
 

@@ -47,20 +47,32 @@ pub fn companions(settings: &Settings, approach: &Approach) -> Vec<(Settings, Ap
     companions
 }
 
-/// A companion has so many samples at least, and so many times those of the run while these are not too many: what comes
-/// back at each sample of the run is seen to move between them.
+/// A companion has so many samples at least, and so many times those of the run while these are not too many: what
+/// comes back at each sample of the run is seen to move between them.
 const LOOKS: f64 = 1024.0;
 const OFTEN: f64 = 13.0;
 const MANY: f64 = 100_000.0;
 
-/// A companion's settings with more samples, among them those of the run: the size of a motion is taken from them. Steps
-/// of fixed length are hardly shortened.
+/// A companion's settings with more samples, among them those of the run: the size of a motion is taken from them. So
+/// many times as many that it is a prime: a motion with a period that fits into the interval of the run's samples is
+/// rarely seen at one phase again. Steps of fixed length are hardly shortened.
 pub fn closely(settings: &Settings, approach: &Approach) -> Settings {
     let Settings { t_end, step, sample_every, .. } = *settings;
     let n = t_end / sample_every;
-    let wanted = (LOOKS / n).max(OFTEN.min(MANY / n)).ceil().max(1.0);
+    let wanted = prime((LOOKS / n).max(OFTEN.min(MANY / n)).max(1.0));
     let most = if approach.tolerance.is_none() { (sample_every / step).floor() } else { LOOKS };
     Settings { sample_every: sample_every / wanted.min(most).max(1.0), ..*settings }
+}
+
+/// The least prime, or one, that is no less; of numbers up to a few thousand.
+fn prime(least: f64) -> f64 {
+    let divides = |number: f64, by: u32| number % f64::from(by) == 0.0;
+    let is_prime = |number: f64| (2..64).all(|by| f64::from(by) >= number || !divides(number, by));
+    let mut number = least.ceil();
+    while !is_prime(number) {
+        number += 1.0;
+    }
+    number
 }
 
 /// How far two runs differ in one joint coordinate, at worst over all samples.

@@ -188,8 +188,8 @@ fn worst(values: impl Iterator<Item = f64>) -> f64 {
 /// Times nearer than this part of the run are one.
 const SAME: f64 = 1e-12;
 
-/// Which samples of a run and of its companion belong together, by their times; and both ends, where they differ, as they
-/// do where an event ends the runs. The last samples then belong together, wherever other samples are.
+/// Which samples of a run and of its companion belong together, by their times; and both ends, where they differ, as
+/// they do where an event ends the runs. The last samples then belong together, wherever other samples are.
 fn paired(samples: &[Sample], others: &[Sample]) -> (Vec<(usize, usize)>, Option<[f64; 2]>) {
     let slack = SAME * samples.last().map_or(0.0, |last| last.t);
     let (mut pairs, mut other) = (Vec::new(), 0);
@@ -199,6 +199,7 @@ fn paired(samples: &[Sample], others: &[Sample]) -> (Vec<(usize, usize)>, Option
         }
         if others.get(other).is_some_and(|found| found.t <= sample.t + slack) {
             pairs.push((k, other));
+            other += 1;
         }
     }
     let (Some(last), Some(last_other)) = (samples.last(), others.last()) else { return (pairs, None) };

@@ -2,10 +2,12 @@
 
 mod advance;
 mod control;
+mod halt;
 mod sides;
 mod state;
 mod watch;
 
+use halt::Halt;
 pub(crate) use state::state;
 
 use crate::advice::Plan;
@@ -202,30 +204,6 @@ pub(crate) fn layout<'a, M: Partition<Scalar: Real>>(
     approach: &Approach,
 ) -> Option<&'a JointLayout<'a>> {
     (approach.coordinates == Coordinates::Joint).then(|| builder.joint_layout(mechanism)).flatten()
-}
-
-/// Why a run ends before its time.
-enum Halt {
-    Motion(contact::Error),
-    Output(io::Error),
-}
-
-impl From<Error> for Halt {
-    fn from(error: Error) -> Self {
-        Self::Motion(error.into())
-    }
-}
-
-impl From<contact::Error> for Halt {
-    fn from(error: contact::Error) -> Self {
-        Self::Motion(error)
-    }
-}
-
-impl From<io::Error> for Halt {
-    fn from(error: io::Error) -> Self {
-        Self::Output(error)
-    }
 }
 
 /// Whoever is told, and when that was last about progress.

@@ -226,8 +226,8 @@ impl<'a> Keeper<'a> {
         std::mem::swap(&mut self.last, &mut self.now);
     }
 
-    /// Appends what is kept: final values, extremes, passages, the estimate, moves, series. Of a scenario that failed there is
-    /// its series up to there and nothing else.
+    /// Appends what is kept: final values, extremes, passages, the estimate, moves, series. Of a scenario that failed
+    /// there is its series up to there and nothing else.
     pub fn finish(&mut self, is_complete: bool, numbers: &mut Vec<f64>) {
         let start = numbers.len();
         if is_complete {

@@ -28,6 +28,7 @@ impl Document {
     /// The line and what is wrong there.
     pub(super) fn parse(text: &str) -> Result<Self, (u32, String)> {
         let mut reader = Reader::from_str(text);
+        reader.config_mut().allow_dangling_amp = true;
         let mut elements = vec![Element::new(1, 0)];
         let (mut open, mut line, mut seen) = (0, 1, 0);
         loop {

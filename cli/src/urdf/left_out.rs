@@ -1,4 +1,5 @@
-//! Elements that a model file has nothing for: told, or refused where the robot would be another mechanism without them.
+//! Elements that a model file has nothing for: told, or refused where the robot would be another mechanism without
+//! them.
 
 use super::document::Node;
 use super::element::{Findings, XACRO};

@@ -111,7 +111,7 @@ fn a_run_is_judged_and_linearised() {
     assert_eq!((start["t"].as_f64(), start["steps"].as_u64()), (Some(0.0), Some(0)));
     let fastest = start["linearization"]["eigenvalues"][0][1].as_f64().unwrap();
     assert!((fastest - 144.31).abs() < 0.1, "{start}");
-    assert_eq!(folder.files(), ["gyroscope_parameters.csv"], "one sample has no plots");
+    assert_eq!(folder.files(), ["gyroscope_parameters-linearized.csv"], "one sample has no plots");
 }
 
 #[test]

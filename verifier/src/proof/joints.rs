@@ -138,8 +138,8 @@ fn normalised<'a>(case: &Case<'a>, layout: &JointLayout) -> Option<Vec<Term<'a>>
     Some(joints)
 }
 
-/// The state satisfies the constraints but those that close loops; Euler parameters being normalised, the coordinates, rates and work that it has are
-/// those given, and its turn references the continuous angles.
+/// The state satisfies the constraints but those that close loops; Euler parameters being normalised, the coordinates,
+/// rates and work that it has are those given, and its turn references the continuous angles.
 pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let layout = case.module.joints.as_ref()?;
     let (maximal, joints) = (case.maximal(&case.joints), normalised(case, layout)?);

@@ -1,5 +1,5 @@
-//! Verdicts on runs whose truth is known: a rotor under a torque that is a narrow pulse, and oscillators that are looked at
-//! as often as they come back.
+//! Verdicts on runs whose truth is known: a rotor under a torque that is a narrow pulse, and oscillators that are
+//! looked at as often as they come back.
 
 use super::*;
 use crate::spinner::Spinner;
