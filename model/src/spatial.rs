@@ -23,6 +23,9 @@ pub fn unit_vector(direction: &[Rational; 3]) -> Option<Vector> {
     scaled(direction).map(|v| Vector::from(v).normalize())
 }
 
+/// Elements of a unit quaternion below this are zero but for rounding.
+const ROUNDING: f64 = 1e-12;
+
 impl Quaternion {
     /// No rotation.
     pub const IDENTITY: Self = Self([1.0, 0.0, 0.0, 0.0]);
@@ -81,6 +84,13 @@ impl Quaternion {
         let side = self.dot(other);
         let first = self.0.into_iter().find(|&e| e != 0.0).unwrap_or(1.0);
         if side < 0.0 || (side == 0.0 && first < 0.0) { Self(self.0.map(|e| -e)) } else { self }
+    }
+
+    /// Of the two quaternions of this rotation, the one whose first element that is not zero, but for rounding, is
+    /// positive.
+    pub fn positive(self) -> Self {
+        let first = self.0.into_iter().find(|e| e.abs() > ROUNDING).unwrap_or(1.0);
+        if first < 0.0 { Self(self.0.map(|e| -e)) } else { self }
     }
 
     /// The matrix `A(p)`, paper eq. (3), by rows.

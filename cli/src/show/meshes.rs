@@ -65,8 +65,11 @@ pub(crate) fn mesh(path: &Path) -> io::Result<Mesh> {
     Mesh::new(&vertices, &triangles).ok_or_else(empty)
 }
 
-/// All vertices of a file, and all triangles of these.
-pub(crate) fn surface(path: &Path) -> io::Result<(Vec<[f32; 3]>, Vec<[u32; 3]>)> {
+/// Vertices, and triangles of these.
+pub(crate) type Surface = (Vec<[f32; 3]>, Vec<[u32; 3]>);
+
+/// All of a file.
+pub(crate) fn surface(path: &Path) -> io::Result<Surface> {
     let scene = parsed(whole(files::bytes(path, LARGEST)?, path)?, path)?;
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for part in &scene.meshes {

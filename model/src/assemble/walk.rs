@@ -92,7 +92,7 @@ impl<'m> Walk<'m> {
         let (joint, parent) = (&self.geometry[hanging.joint], self.states[hanging.parent]);
         let relative = self.relative_orientation(hanging);
         let step = if hanging.reversed { relative.conjugate() } else { relative };
-        let p = (parent.p * step).normalised().nearest(parent.p);
+        let p = (parent.p * step).normalised().positive();
         let w = self.angular_velocity(hanging, step);
         let (near, far) = if hanging.reversed {
             (joint.second.point, joint.first.point)

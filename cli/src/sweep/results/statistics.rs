@@ -40,9 +40,9 @@ pub(super) fn table(targets: &[Column<'_>], numbers: &[Column<'_>], every: u64) 
     }
     html += "</table>\n";
     let of = if every > 1 { format!("every {every}th scenario") } else { "all scenarios".to_owned() };
-    let _ = write!(
+    let _ = writeln!(
         html,
-        "<p>Of {of}. The yield is the part of them within the limits that are written in; failed ones are not.</p>\n"
+        "<p>Of {of}. The yield is the part of them within the limits that are written in; failed ones are not.</p>"
     );
     html + &yields(numbers)
 }
