@@ -92,7 +92,13 @@ impl<'m> Walk<'m> {
         let (joint, parent) = (&self.geometry[hanging.joint], self.states[hanging.parent]);
         let relative = self.relative_orientation(hanging);
         let step = if hanging.reversed { relative.conjugate() } else { relative };
-        let p = (parent.p * step).normalised().positive();
+        let p = (parent.p * step).normalised();
+        let is_given = match joint.kind {
+            JointKind::Spherical => self.guesses[hanging.joint].orientation.is_some(),
+            JointKind::PointOnLine => true,
+            _ => false,
+        };
+        let p = if is_given { p } else { p.positive() };
         let w = self.angular_velocity(hanging, step);
         let (near, far) = if hanging.reversed {
             (joint.second.point, joint.first.point)
