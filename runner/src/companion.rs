@@ -58,8 +58,8 @@ const MANY: f64 = 100_000.0;
 /// rarely seen at one phase again. Steps of fixed length are hardly shortened.
 pub fn closely(settings: &Settings, approach: &Approach) -> Settings {
     let Settings { t_end, step, sample_every, .. } = *settings;
-    let n = t_end / sample_every;
-    let wanted = prime((LOOKS / n).max(OFTEN.min(MANY / n)).max(1.0));
+    let n = (t_end / sample_every).max(1.0);
+    let wanted = prime((LOOKS / n).max(OFTEN.min(MANY / n)));
     let most = if approach.tolerance.is_none() { (sample_every / step).floor() } else { LOOKS };
     Settings { sample_every: sample_every / wanted.min(most).max(1.0), ..*settings }
 }
@@ -153,6 +153,18 @@ pub(crate) fn distance(one: &JointSample, other: &JointSample) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn runs_of_any_length_are_looked_at_closely() {
+        for t_end in [1e-300, 1e-20, 0.049, 0.05, 1.0, 1e6] {
+            let settings = Settings { t_end, step: 1e-3, correct_every: None, sample_every: 0.05 };
+            for tolerance in [None, Some(1e-9)] {
+                let approach = Approach { tolerance, ..Approach::default() };
+                let parts = settings.sample_every / closely(&settings, &approach).sample_every;
+                assert!(parts >= 1.0 && (parts - parts.round()).abs() < 1e-9, "{t_end} {tolerance:?}");
+            }
+        }
+    }
 
     #[test]
     fn orientations_differ_by_an_angle_whatever_their_sign() {

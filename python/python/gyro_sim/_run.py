@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
 # Names of columns and of the states of a linearisation differ in these.
 _PLAIN = str.maketrans(" .", "__")
 
 
+@dataclass(frozen=True)
 class Verdict:
     """How far a run can be trusted, by comparison with another one of the same mechanism."""
 
