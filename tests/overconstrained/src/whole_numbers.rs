@@ -1,7 +1,8 @@
 //! Bennett's linkage of sides 1 and 2, twisted by 30 and 90 degrees, reduced to the angle of its first joint.
 //!
 //! With θ0 and θ1 from normal to normal about neighbouring axes, `tan(θ0/2) tan(θ1/2) = sin(½(β + α)) / sin(½(β − α))`;
-//! opposite angles are opposite. With `T = ½ I(θ0) θ̇0²` and the potential V(θ0) it follows that `I θ̈0 = −½ I' θ̇0² − V'`.
+//! opposite angles are opposite. With `T = ½ I(θ0) θ̇0²` and the potential V(θ0) it follows that
+//! `I θ̈0 = −½ I' θ̇0² − V'`.
 
 use crate::{Axis, Link, Loop};
 use nalgebra::Vector3;
