@@ -72,14 +72,23 @@ pub(crate) fn describe(model: &Model, dropped: &RedundantRow) -> String {
     format!("{} depends on {with}{dropped}; how these share a load is not unique", model.row_named(row))
 }
 
-/// One sentence about all dropped rows: which they are, and what of reactions is not unique without them.
+/// One sentence about all redundant rows: which are dropped, which stay, and what of reactions is not unique.
 pub(crate) fn dropped(model: &Model) -> Option<String> {
-    let rows: Vec<String> = model.redundant.iter().map(|dropped| model.row_named(dropped.row)).collect();
-    let (depends, is) = match rows.len() {
-        0 => return None,
-        1 => ("depends", "is"),
-        _ => ("depend", "are"),
+    if model.redundant.is_empty() {
+        return None;
+    }
+    let of = |stays: bool, [one, several]: [&str; 2]| {
+        let rows = model.redundant.iter().filter(|redundant| redundant.stays == stays);
+        let rows: Vec<String> = rows.map(|redundant| model.row_named(redundant.row)).collect();
+        let what = if rows.len() == 1 { one } else { several };
+        (!rows.is_empty()).then(|| format!("{} {what}", rows.join(", ")))
     };
+    let dropped = ["depends on others and is dropped", "depend on others and are dropped"];
+    let staying = [
+        "depends on others in another way at each pose and stays",
+        "depend on others in another way at each pose and stay",
+    ];
+    let rows: Vec<String> = [of(false, dropped), of(true, staying)].into_iter().flatten().collect();
     let names = OutputKind::Reaction { joint: 0 }.columns();
     let mut shared: Vec<(String, Vec<String>)> = Vec::new();
     for (joint, described) in model.joints.iter().enumerate() {
@@ -101,10 +110,7 @@ pub(crate) fn dropped(model: &Model) -> Option<String> {
     } else {
         format!("of the reactions these are not unique: {}", loads.join("; "))
     };
-    Some(format!(
-        "{} {depends} on others and {is} dropped; the motion is the same, and {loads}",
-        rows.join(", ")
-    ))
+    Some(format!("{}; the motion is the same, and {loads}", rows.join("; ")))
 }
 
 /// Which numbers of a joint's reaction are not unique.

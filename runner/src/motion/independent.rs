@@ -158,8 +158,7 @@ impl Tangent {
             let rates = change[n_coordinates..].iter().take(tangent.rates.len()).copied();
             tangent.along_rates(&change).into_iter().chain(rates).map(|part| part * rate.unit).collect()
         });
-        let n_free = tangent.rates.len() - layout.closure_rows.len();
-        let (independent, columns) = eliminate(columns.collect(), n_free, &tangent.rates);
+        let (independent, columns) = eliminate(columns.collect(), &tangent.rates);
         Self { independent, columns, ..tangent }
     }
 
@@ -218,18 +217,23 @@ impl Tangent {
     }
 }
 
-/// Chooses so many of the upper rows and combines the columns until they are one there: Gauss and Jordan with the
-/// largest pivot of all (Golub and Van Loan, *Matrix Computations*, section 3.4.8). The same rows of the lower half are
-/// then made zero.
-fn eliminate(mut columns: Vec<Vec<f64>>, n: usize, rates: &[Rate]) -> (Vec<usize>, Vec<Vec<f64>>) {
+/// The columns are those of a projector. What is left of them once they are combined is below this; of a pivot it is
+/// of the order of one by the number of rates.
+const NOTHING: f64 = 1e-4;
+
+/// Chooses as many of the upper rows as are independent and combines the columns until they are one there: Gauss and
+/// Jordan with the largest pivot of all (Golub and Van Loan, *Matrix Computations*, section 3.4.8). The same rows of
+/// the lower half are then made zero.
+fn eliminate(mut columns: Vec<Vec<f64>>, rates: &[Rate]) -> (Vec<usize>, Vec<Vec<f64>>) {
     let mut chosen: Vec<(usize, Vec<f64>)> = Vec::new();
-    while chosen.len() < n {
+    loop {
         let free = |row: &usize| chosen.iter().all(|(other, _)| other != row);
         let elements = columns.iter().enumerate().flat_map(|(column, values)| {
             (0..rates.len()).map(move |row| (row, column, (values[row] / rates[row].unit).abs()))
         });
         let elements = elements.filter(|(row, ..)| free(row));
-        let Some((row, column, _)) = elements.max_by(|a, b| a.2.total_cmp(&b.2)) else { break };
+        let largest = elements.max_by(|a, b| a.2.total_cmp(&b.2)).filter(|(.., pivot)| *pivot > NOTHING);
+        let Some((row, column, _)) = largest else { break };
         let mut pivot = columns.swap_remove(column);
         let scale = 1.0 / pivot[row];
         pivot.iter_mut().for_each(|value| *value *= scale);

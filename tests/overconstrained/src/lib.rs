@@ -6,6 +6,8 @@
 //! (*Motion structures*, 2012). Poses are found by Newton's iteration on the closure, whole and by least squares,
 //! which knows nothing of rows, trees or redundancy.
 
+pub mod whole_numbers;
+
 use nalgebra::{DMatrix, DVector, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
