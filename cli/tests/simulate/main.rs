@@ -11,6 +11,7 @@ mod events;
 mod inputs;
 mod interrupted;
 mod kinks;
+mod orientation;
 mod plants;
 mod refusals;
 mod support;
