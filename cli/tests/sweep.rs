@@ -381,13 +381,14 @@ values = {rate:?}
     let [lengths, series_of_lengths] = run(&study(&parameters[..9], &rates[..1]), "lengths");
     let rates = [&rates[..1], &rates[9..]].concat();
     let [of_rate, series_of_rate] = run(&study(&parameters[..1], &rates), "rates");
-    let numbers = 7;
+    // Of each of the two rough joints the table says how far it was moved.
+    let (numbers, moved) = (7, 2);
     let mut judged = 0;
     for (target, table, first) in [(0, &lengths, 1), (1, &lengths, 5), (2, &of_rate, 1)] {
         for number in 0..numbers {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| table[first + k][4 + number]);
             let expected = (8.0 * (c - b) - (d - a)) / (12.0 * apart);
-            let found = table[0][4 + numbers + 3 * number + target];
+            let found = table[0][4 + numbers + moved + 3 * number + target];
             assert!(
                 (found - expected).abs() < 1e-6 * (1.0 + expected.abs()),
                 "{number}, {target}: {found} {expected}"
