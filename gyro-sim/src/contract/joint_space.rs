@@ -168,12 +168,13 @@ impl JointLayout<'_> {
     /// the rates of Euler parameters, which are in proportion to them.
     #[inline(always)]
     pub fn normalise<T: Scalar>(&self, x: &mut [T]) {
-        let mut at = 0;
+        let mut rest = x;
         for place in self.places {
-            if let Some(euler) = place.euler() {
-                normalise(&mut x[at + euler..at + euler + 4]);
+            let Some((own, others)) = rest.split_at_mut_checked(place.n_coordinates()) else { return };
+            if let Some(p) = place.euler().and_then(|first| own.get_mut(first..)) {
+                normalise(p);
             }
-            at += place.n_coordinates();
+            rest = others;
         }
     }
 }

@@ -436,6 +436,9 @@ fn sized(text: &str, value: Option<Rational>) -> Result<Rational, [String; 3]> {
     })
 }
 
+/// The longest time of a run's settings, s: thirty million years.
+const LONGEST: u64 = 1_000_000_000_000_000;
+
 /// A place of the simulation settings: a positive time.
 pub(super) fn positive(
     reader: &mut Reader<'_>,
@@ -445,13 +448,15 @@ pub(super) fn positive(
     debug_assert_eq!(section.owner, Owner::Simulation);
     let item = section.get(key)?;
     let value = plain_number(reader, item)?;
-    if value > Rational::from_integer(0.into()) {
+    let [least, most] = [0, LONGEST].map(|end| Rational::from_integer(end.into()));
+    if value > least && value <= most {
         return Some(value);
     }
     let label = format!("{} s", crate::to_f64(&value));
-    item.wrong(
-        reader,
-        [format!("`{key}` must be positive"), label, "write a time greater than 0, in s".to_owned()],
-    );
+    let [message, help] = match value > least {
+        true => [format!("`{key}` is too long"), format!("write at most {LONGEST:e} s")],
+        false => [format!("`{key}` must be positive"), "write a time greater than 0, in s".to_owned()],
+    };
+    item.wrong(reader, [message, label, help]);
     None
 }
