@@ -15,6 +15,7 @@ mod orientation;
 mod plants;
 mod refusals;
 mod support;
+mod verdicts;
 
 use crate::inputs::MOTOR;
 use crate::support::{Folder, json, model, simulate, xtask};
