@@ -218,7 +218,7 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/axis_shared.rs", "train", "waiting.couple(graph, (unknown, unknown), «coupling»);", "Graph::ZERO"),
     fault("joint_space/axis_shared.rs", "train", "let taken = «graph.neg(taken)»;", "taken"),
     fault("joint_space/axis_shared.rs", "train", "self.loads[unknown] = «graph.sub(self.loads[unknown], taken)»;", "graph.add(self.loads[unknown], taken)"),
-    fault("joint_space/axis_shared.rs", "train", "let resisted = graph.mul(resisted, «*inverse»);", "graph.neg(*inverse)"),
+    fault("joint_space/axis_shared.rs", "train", "let resisted = «graph.mul(resisted, *inverse)»;", "{ let product = graph.mul(resisted, *inverse); graph.neg(product) }"),
     fault("joint_space/axis_shared.rs", "train", "*load = «load.plus(graph, &taken)»;", "*load"),
     fault("joint_space/axis_shared.rs", "train", "let share = «graph.sub(*share, resisted)»;", "*share"),
     fault("joint_space/articulated_inertia.rs", "train", "*wrench = «wrench.plus(graph, &taken)»;", "*wrench"),
