@@ -283,7 +283,8 @@ fn methods_keep_their_order() {
     };
     let truth = by_dop853(2.5e-4);
     let error = |x: &[f64]| x[..4].iter().zip(&truth).fold(0.0, |e: f64, (a, b)| e.max((a - b).abs()));
-    let methods: [(&str, i32, f64, &dyn Fn(f64) -> Vec<f64>); 4] = [
+    type Make<'m> = &'m dyn Fn(f64) -> Vec<f64>;
+    let methods: [(&str, i32, f64, Make<'_>); 4] = [
         ("rk4", 4, 1e-3, &by_rk4),
         ("tsit5", 5, 1e-3, &by_tsit5),
         ("dop853", 8, 4e-3, &by_dop853),
