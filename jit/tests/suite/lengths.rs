@@ -252,6 +252,9 @@ fn the_tip_of_a_spinner_stays_where_it_is() {
     }
 }
 
+/// A run by steps of a length.
+type Make<'m> = &'m dyn Fn(f64) -> Vec<f64>;
+
 /// All methods keep their order, from a start of any length.
 #[test]
 fn methods_keep_their_order() {
@@ -283,7 +286,6 @@ fn methods_keep_their_order() {
     };
     let truth = by_dop853(2.5e-4);
     let error = |x: &[f64]| x[..4].iter().zip(&truth).fold(0.0, |e: f64, (a, b)| e.max((a - b).abs()));
-    type Make<'m> = &'m dyn Fn(f64) -> Vec<f64>;
     let methods: [(&str, i32, f64, Make<'_>); 4] = [
         ("rk4", 4, 1e-3, &by_rk4),
         ("tsit5", 5, 1e-3, &by_tsit5),
