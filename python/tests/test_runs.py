@@ -98,7 +98,7 @@ def test_a_run_that_fails_says_where(pendulum):
 
 
 def test_redundant_rows_are_warned_of():
-    with pytest.warns(gyro.RunWarning, match="is dropped"):
+    with pytest.warns(gyro.RunWarning, match="are dropped"):
         gyro.load(MODELS / "slider-crank.toml")
 
 
@@ -151,7 +151,7 @@ def test_robots_are_read(tmp_path):
     )
     with pytest.warns(gyro.RunWarning, match="limits makes stops") as told:
         arm = gyro.from_urdf(urdf, motors=True)
-    assert len(told) == 1 and arm.source.startswith("# Written by gyro_sim.from_urdf from arm.urdf")
+    assert len(told) == 1 and arm.source[0].startswith("# Written by gyro_sim.from_urdf from arm.urdf")
     assert arm.joints == ["shoulder"] and list(arm.inputs) == ["shoulder_motor"]
     accelerations = arm.joint_accelerations([0.0], [0.0], [1.0])
     assert np.allclose(accelerations, 1 / (0.1 + 0.25))

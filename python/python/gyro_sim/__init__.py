@@ -86,7 +86,8 @@ def from_urdf(
     density: of shapes (kg/m3), from which mass and inertia are taken where the file has none, or none of a body.
     ignore: names of elements to be left out, though the robot may be another mechanism without them.
 
-    What of the robot has no counterpart is warned of, in one warning (RunWarning). The model file is `mechanism.source`.
+    What of the robot has no counterpart is warned of, in one warning (RunWarning). The text of the model file is
+    `mechanism.source[0]`.
     """
     flags = {"floating": floating, "motors": motors, "limits": limits, "as_written": as_written}
     options = [f"--{name.replace('_', '-')}" for name, wanted in flags.items() if wanted]
