@@ -3,8 +3,8 @@
 use crate::support::{Folder, json};
 use std::fs;
 
-/// Two discs on parallel shafts 1 m apart, the second geared to turn by −2 with the first, a torsional spring at the first
-/// and a damped link between points of both.
+/// Two discs on parallel shafts 1 m apart, the second geared to turn by −2 with the first, a torsional spring at the
+/// first and a damped link between points of both.
 const DISCS: &str = r#"
 format = 1
 name = "discs"
