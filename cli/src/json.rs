@@ -39,6 +39,7 @@ pub(crate) fn object(
         "events": events::object(&scene.model, &outcome.occurrences),
         "files": files(written),
         "constraint_violation": summary.position_violation,
+        "norm_violation": summary.norm_violation,
         "velocity_violation": summary.velocity_violation,
         "energy": last.energy(),
         "energy_drift": summary.energy_drift,

@@ -15,6 +15,7 @@ mod loads;
 mod orientation;
 mod plants;
 mod refusals;
+mod stops;
 mod support;
 mod verdicts;
 
@@ -61,6 +62,7 @@ fn json_is_one_object_and_both_engines_give_the_same() {
             "joints",
             "method",
             "model",
+            "norm_violation",
             "outputs",
             "poses_passed",
             "poses_stepped_over",

@@ -148,6 +148,20 @@ fn poses_are_continuous_over_many_turns() {
                 let before = along(row, &rows[k.saturating_sub(1)]);
                 assert!(before > 0.5, "case {case}, {name}, row {k}: {before} to the row before\n{text}");
             }
+            // What the file gives keeps its sign, and where it gives none the first element is positive.
+            let start: Vec<f64> = rows[0][first..first + 4].to_vec();
+            let body = name.trim_end_matches("_pose.e0 [1]");
+            let of =
+                text.find(&format!("second = {{ body = \"{body}\"")).or(text.find("free = true")).unwrap();
+            let given = text[of..].split_once("orientation = ").filter(|_| !body.starts_with("link"));
+            let sign: f64 = match given {
+                Some((_, rest)) => {
+                    let list = rest[1..].split_once(']').unwrap().0;
+                    list.split(", ").zip(&start).map(|(e, own)| e.parse::<f64>().unwrap() * own).sum()
+                }
+                None => start.iter().copied().find(|e| e.abs() > 1e-12).unwrap(),
+            };
+            assert!(sign > 0.0, "case {case}, {name} starts at {start:?}\n{text}");
             turned += usize::from(rows.iter().any(|row| along(row, &rows[0]) < -0.5));
         }
     }

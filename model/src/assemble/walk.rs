@@ -60,7 +60,8 @@ pub(super) fn roots(model: &Model, tree: &Tree) -> Vec<State> {
         let of = |numbers: &[Number; 3]| if floats { vector(model, numbers) } else { Vector::zeros() };
         State {
             r: vector(model, &body.position),
-            p: body.unit_orientation(model),
+            // A motion counts from its own side; what the file gives of a body that floats keeps its sign.
+            p: if floats { body.given_orientation(model) } else { body.unit_orientation(model) },
             s: of(&body.velocity),
             w: body.angular_velocity.as_ref().map_or(Vector::zeros(), of),
         }
