@@ -1,6 +1,9 @@
 //! Runs of which nothing is said: shipped model files and examples, by the plain command.
 
+use crate::contacts::chain;
 use crate::support::{Folder, json, model, simulate};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -119,4 +122,49 @@ fn a_stiff_scene_is_found_and_the_summary_says_so() {
     let text = String::from_utf8_lossy(&output.stdout);
     let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("chosen: ")).collect();
     assert!(lines.len() == 1 && lines[0].contains("rodas4"), "{text}");
+}
+
+/// A chain without its contacts; dampers in its joints are soft to hard.
+fn damped(random: &mut ChaCha8Rng) -> String {
+    let mut is_kept = true;
+    let mut text = String::new();
+    for line in chain(random).lines() {
+        if line.starts_with("[[") {
+            is_kept = line != "[[contact]]";
+        }
+        if is_kept {
+            text += &format!("{line}\n");
+        }
+        if line.starts_with("name = \"joint_") && random.random_bool(0.5) {
+            text += &format!("damping = {:?}\n", 10_f64.powf(random.random_range(-4.0..3.5)));
+        }
+    }
+    text
+}
+
+/// By the plain command it is right to what its tolerance promises, soft or hard.
+#[test]
+fn random_chains_run_well_by_the_plain_command() {
+    let folder = Folder::new("plain");
+    let mut random = ChaCha8Rng::seed_from_u64(4009);
+    let mut n_stiff = 0;
+    for case in 0..16 {
+        let text = damped(&mut random);
+        fs::write(folder.0.join("chain.toml"), &text).unwrap();
+        let run = |more: &[&str]| json(&folder, &[&["chain.toml"], &FAST[..], more].concat());
+        let plain = run(&[]);
+        let is_stiff = plain["integrator"] == "rodas4";
+        n_stiff += u32::from(is_stiff);
+        let finer = run(&["--coordinates", "maximal", "--tolerance", "1e-11", "--integrator", "dop853"]);
+        for (name, joint) in plain["joints"].as_object().unwrap() {
+            for (key, limit) in [("position", 1e-6), ("rate", 1e-5)] {
+                let [found, expected] =
+                    [joint, &finer["joints"][name]].map(|joint| joint[key].as_f64().unwrap());
+                let told = format!("case {case}, {name} {key}: {found}, should be {expected}");
+                assert!((found - expected).abs() < limit * expected.abs().max(1.0), "{told}\n{text}");
+            }
+        }
+    }
+    println!("{n_stiff} are stiff");
+    assert!(n_stiff > 2, "{n_stiff}");
 }
