@@ -22,12 +22,11 @@ pub mod files;
 mod fit;
 mod folder;
 pub mod generate;
+mod in_process;
 mod inputs;
 mod inspect;
 mod interrupt;
 mod invocation;
-#[cfg(feature = "jit")]
-mod jit;
 mod json;
 #[cfg(feature = "jit")]
 pub mod library;
@@ -42,7 +41,7 @@ pub mod places;
 mod plot;
 pub mod programs;
 pub mod progress;
-mod quicker;
+mod proof;
 mod remarks;
 mod report;
 mod rounding;

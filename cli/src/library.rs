@@ -5,8 +5,8 @@
 use crate::args::{Engine, InputSetting, SimulateArgs};
 use crate::columns;
 use crate::failure::Failure;
+use crate::in_process;
 use crate::invocation::with_suggestion;
-use crate::jit;
 use crate::runs::Runs;
 use crate::scene::{self, Scene};
 use crate::verdict::{self, Outcome};
@@ -92,7 +92,7 @@ impl Request {
     /// An option is unknown or its value is none.
     pub fn of(file: &str, options: &[String]) -> Result<Self, Failure> {
         match parsed("simulate", file, options)? {
-            Command::Simulate(args) => Ok(Self(SimulateArgs { engine: Some(Engine::Jit), ..args })),
+            Command::Simulate(args) => Ok(Self(SimulateArgs { engine: Some(Engine::InProcess), ..args })),
             _ => unreachable!("`simulate` was asked for"),
         }
     }
@@ -226,7 +226,7 @@ impl Run {
 
     /// The summary as text.
     pub fn text(&self) -> String {
-        summary::text(&self.scene, &self.outcome, "", &[])
+        summary::text(&self.scene, (&self.outcome, None), "", &[])
     }
 
     /// What the run says of itself that is not good.
@@ -260,7 +260,7 @@ impl Run {
 fn outcome(scene: &mut Scene, kernels: &Kernels, stop: Stop<'_>) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     simulate::follow(scene, &mut outcome, |scene, tell| {
-        jit::explained(scene, tell, |runs, tell| make(scene, runs, (kernels, stop), tell))
+        in_process::explained(scene, tell, |runs, tell| make(scene, runs, (kernels, stop), tell))
     })?;
     Ok(outcome)
 }
@@ -270,14 +270,15 @@ fn make(
     runs: Option<Runs>,
     (kernels, stop): (&Kernels, Stop<'_>),
     tell: &mut dyn FnMut(Event<'_>),
-) -> Result<jit::Outcome, Failure> {
-    let functions = jit::functions(runs);
-    let mut mechanism = kernels.get_by(&functions, scene.effort, || jit::compiled(scene, &functions))?;
+) -> Result<in_process::Outcome, Failure> {
+    let functions = in_process::functions(runs);
+    let mut mechanism =
+        kernels.get_by(&functions, scene.effort, || in_process::compiled(scene, &functions, None))?;
     let mut tell = |event: Event<'_>| {
         tell(event);
         if stop() { Err(io::ErrorKind::Interrupted.into()) } else { Ok(()) }
     };
-    match jit::follow(scene, runs, &mut mechanism, &mut tell) {
+    match in_process::follow(scene, runs, &mut mechanism, &mut tell) {
         Err(gyro_runner::Failure::Output(_)) => Err(Failure::Interrupted("interrupted".to_owned())),
         outcome => Ok(outcome),
     }

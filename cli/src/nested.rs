@@ -7,7 +7,6 @@
 use crate::args::{AnswerArgs, Precision};
 use crate::failure::Failure;
 use crate::progress::{self, Spinner};
-use crate::quicker::{self, Took};
 use crate::runs::{Runs, main};
 use crate::scene::Scene;
 use crate::verify::verify_quickly;
@@ -22,44 +21,32 @@ use std::hash::{Hash, Hasher};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-use std::time::Instant;
 
 /// Generates, compiles and runs; `tell` hears of samples and progress.
 ///
 /// A run that fails for a reason which a linearisation explains is made again by a program that has one, of which the
 /// reason is all that is heard: to most runs that program would be of no use.
-pub(crate) fn simulate(
-    scene: &Scene,
-    tell: impl FnMut(Event<'_>),
-    took: &mut Took,
-) -> Result<Summary, Failure> {
+pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Summary, Failure> {
     let runs = Runs::of(scene);
     let is_companion = scene.has_companions && !scene.approach.examine;
-    let words = match run(scene, runs, tell, took)? {
+    let words = match run(scene, runs, tell)? {
         Answer::Done(summary, _) => return Ok(*summary),
         Answer::Unexplained(words) => words,
     };
     if !is_companion {
-        run(scene, runs.map(Runs::examined), |_| (), took)?;
+        run(scene, runs.map(Runs::examined), |_| ())?;
     }
     Err(Failure::Run(words))
 }
 
 /// Generates, compiles and runs with a program for these runs.
-fn run(
-    scene: &Scene,
-    runs: Option<Runs>,
-    tell: impl FnMut(Event<'_>),
-    took: &mut Took,
-) -> Result<Answer, Failure> {
+fn run(scene: &Scene, runs: Option<Runs>, tell: impl FnMut(Event<'_>)) -> Result<Answer, Failure> {
     let spinner = progress::deriving(&scene.page);
     let functions = runs.map_or_else(Functions::of_solvers, Runs::functions);
     let module = gyro_codegen::generate_by_effort(&scene.page_name, &scene.page, &functions, scene.effort)
         .map_err(|e| Failure::Usage(e.to_string()))?;
     drop(spinner);
-    let began = Instant::now();
     let program = program(&scene.page, &module, scene.precision, runs)?;
-    let compiled = began.elapsed();
     let request = Request {
         settings: scene.settings,
         approach: scene.approach,
@@ -68,13 +55,7 @@ fn run(
         measure_for: None,
     };
     let _interruptible = interrupt::Run::begin();
-    let answer = Session::open(&program, &[])?.hear(&request, tell)?;
-    *took = Took {
-        operations: quicker::operations(&module.data_sheet),
-        compiling: compiled.as_secs_f64(),
-        running: (began.elapsed() - compiled).as_secs_f64(),
-    };
-    Ok(answer)
+    Session::open(&program, &[])?.hear(&request, tell)
 }
 
 /// Compiles a module into a program that answers requests of these runs, or of all; returns where it is.
@@ -196,18 +177,12 @@ struct Package {
 }
 
 /// What a run can be had by without cargo.
-const OTHER_ENGINES: &str = if cfg!(feature = "jit") {
-    ", or take --engine jit, which needs no compiler and has the same results to the last bit"
-} else {
-    ", or take an engine that needs no compiler, such as --engine assembled"
-};
+const OTHER_ENGINES: &str =
+    ", or leave out --engine: that needs no compiler and has the same results to the last bit";
 
 /// The same of a sweep.
-const SINGLE_SCENARIOS: &str = if cfg!(feature = "jit") {
-    ". Without it, single scenarios can be had: `simulate MODEL --engine jit --set PARAMETER=VALUE`"
-} else {
-    ". Without it, single scenarios can be had: `simulate MODEL --engine assembled --set PARAMETER=VALUE`"
-};
+const SINGLE_SCENARIOS: &str =
+    ". Without it, single scenarios can be had: `simulate MODEL --set PARAMETER=VALUE`";
 
 impl Package {
     fn program(module: &Module, precision: Precision, runs: Option<Runs>) -> Self {

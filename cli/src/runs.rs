@@ -59,7 +59,6 @@ impl Runs {
     }
 
     /// Whether they are linearised.
-    #[cfg(feature = "jit")]
     pub(crate) fn is_examined(self) -> bool {
         self.is_examined
     }

@@ -32,12 +32,10 @@ pub(crate) struct Scene {
     /// How far the assembly has moved what the model file gives of the start.
     pub(crate) moved: Vec<Move>,
     pub(crate) engine: Engine,
-    /// What generated code allows and how it would be run, where another engine was chosen for its speed alone.
-    pub(crate) generated: Option<(Offers, Approach)>,
     pub(crate) precision: Precision,
     /// How long generated code is searched for short forms.
     pub(crate) effort: gyro_codegen::Effort,
-    /// Whether what is compiled in the process is proved first.
+    /// Whether what runs in this process is proved beside it.
     pub(crate) proves: bool,
     /// Whether the run is compared with other ones of the same mechanism.
     pub(crate) has_companions: bool,
@@ -90,10 +88,9 @@ impl Scene {
             start,
             moved,
             engine: args.engine(),
-            generated: None,
             precision: args.precision,
             effort: args.effort.into(),
-            proves: proves(args),
+            proves: !args.no_prove,
             has_companions: args.verify,
         })
     }
@@ -105,9 +102,6 @@ impl Scene {
 
     /// Has it run as is fit for a scene that was found to be stiff at this time.
     pub(crate) fn turn(&mut self, t: f64) {
-        if let Some((offers, approach)) = self.generated.take() {
-            (self.engine, self.offers, self.approach) = (Engine::Generated, offers, approach);
-        }
         self.approach = self.chosen.turn(&self.approach, t);
     }
 
@@ -120,16 +114,6 @@ impl Scene {
             (_, other) => other.to_string(),
         }
     }
-}
-
-#[cfg(feature = "jit")]
-fn proves(args: &SimulateArgs) -> bool {
-    args.prove
-}
-
-#[cfg(not(feature = "jit"))]
-fn proves(_: &SimulateArgs) -> bool {
-    false
 }
 
 /// Reads and checks a model file; tables of motions are beside it.
@@ -227,7 +211,7 @@ fn is_balanced(model: &Model, inputs: &[Input]) -> bool {
 fn refusal(offers: &Offers, settings: &Settings, approach: &Approach, args: &SimulateArgs) -> Option<String> {
     if args.linearize.is_some() && !offers.joint_space {
         let words =
-            "--linearize is about joint coordinates: for mechanisms that have them, and --engine generated";
+            "--linearize is about joint coordinates: for mechanisms that have them, and generated code";
         return Some(words.to_owned());
     }
     offers.refusal(&gyro_runner::scheduled(settings, approach), approach)

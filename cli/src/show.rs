@@ -5,15 +5,13 @@ mod efforts;
 mod live;
 pub(crate) mod meshes;
 
-use crate::args::{Change, Engine, ShowArgs, SimulateArgs};
+use crate::args::{Change, ShowArgs, SimulateArgs};
 use crate::failure::Failure;
 use crate::scene::Scene;
 use crate::verdict::Outcome;
 use crate::write::{self, Known};
 use crate::{folder, remarks, simulate, words};
-use gyro_assembled::Recursive;
 use gyro_model::{Model, Output, OutputKind};
-use gyro_runner::{Approach, Coordinates, Correction, Integrator};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -49,7 +47,7 @@ struct Written {
 
 fn written(args: &ShowArgs) -> Result<Written, Failure> {
     refuse_other_results(&args.simulate)?;
-    let first = scene(&args.simulate)?;
+    let first = Scene::new(&args.simulate)?;
     let name = &first.model.name;
     let file_name = format!("{name}.html");
     let path = match &args.simulate.out {
@@ -62,7 +60,7 @@ fn written(args: &ShowArgs) -> Result<Written, Failure> {
     let mut scenes = vec![first];
     if !args.compare.is_empty() {
         let changed = changed(&args.simulate, &args.compare);
-        let second = scene(&changed)?;
+        let second = Scene::new(&changed)?;
         looks.push(meshes::read(&second.model, &changed.model)?);
         scenes.push(second);
     }
@@ -99,48 +97,6 @@ fn refuse_other_results(args: &SimulateArgs) -> Result<(), Failure> {
     match asked.iter().find(|(_, is_asked)| *is_asked) {
         Some((option, _)) => Err(Failure::Usage(format!("{option} is an option of simulate, not of show"))),
         None => Ok(()),
-    }
-}
-
-/// The scene with the engine that answers first, unless one is asked for.
-fn scene(args: &SimulateArgs) -> Result<Scene, Failure> {
-    let whole = Scene::new(args)?;
-    let Approach { integrator, correction, .. } = whole.approach;
-    let asks = args.coordinates == Some(Coordinates::Joint)
-        || whole.model.simulation.coordinates == Some(Coordinates::Joint.name());
-    let needs_code = asks
-        || whole.offers.touches
-        || correction == Correction::ClosedForm
-        || integrator == Integrator::Rodas4;
-    let engine = quickest(&whole);
-    if args.engine.is_some() || needs_code || engine == Engine::Generated {
-        return Ok(whole);
-    }
-    let args = SimulateArgs { engine: Some(engine), ..args.clone() };
-    let mut quick = Scene::of(whole.page, whole.page_name, &args)?;
-    quick.approach.leaves_stiff = whole.approach.leaves_stiff;
-    quick.generated = Some((whole.offers, whole.approach));
-    Ok(quick)
-}
-
-/// Time that generating and compiling takes, s: what the runtime-assembled model has to answer in.
-const COMPILING: f64 = 15.0;
-
-/// Time that a step takes, s, by the number of bodies n: in this program, which is hardly optimised, of the recursion
-/// times n, of the dense form times n cubed. Measured with a gyroscope and a slider-crank.
-const STEP: (f64, f64) = (5e-6, 8e-6);
-
-/// By how long a run with fixed steps takes; under error control steps are few.
-fn quickest(Scene { model, approach, settings, .. }: &Scene) -> Engine {
-    let steps = approach.tolerance.map_or(settings.t_end / settings.step, |_| 0.0);
-    #[expect(clippy::cast_precision_loss, reason = "a count")]
-    let n = model.coordinate_bodies().len() as f64;
-    let is_tree = Recursive::<f64>::supports(model).is_ok();
-    let seconds = steps * if is_tree { STEP.0 * n } else { STEP.1 * n.powi(3) };
-    match is_tree {
-        _ if seconds > COMPILING => Engine::Generated,
-        true => Engine::Recursive,
-        false => Engine::Assembled,
     }
 }
 
@@ -206,7 +162,7 @@ fn outcome(scene: &mut Scene) -> Result<(Outcome, Option<String>), Failure> {
         describe::observed(&scene.model).into_iter().map(|(slot, _)| slot).collect();
     let mut outcome = Outcome::default();
     match simulate::run(scene, &mut outcome) {
-        Ok(()) => Ok((outcome, None)),
+        Ok(proof) => simulate::settled(proof).map(|_| (outcome, None)),
         Err(Failure::Run(words)) if outcome.samples.len() > 1 => Ok((outcome, Some(words))),
         Err(failure) => Err(failure),
     }

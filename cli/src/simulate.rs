@@ -3,18 +3,17 @@
 use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::folder::Folder;
-#[cfg(feature = "jit")]
-use crate::jit;
 use crate::progress::Progress;
-use crate::quicker::Took;
+use crate::proof::{Proof, Standing};
 use crate::remarks::say;
 use crate::scene::Scene;
 use crate::verdict::{self, Outcome, Verdict};
 use crate::write::{self, Known};
 use crate::{
-    columns, events, interrupt, json, linearization, nested, plot, quicker, remarks, summary, words,
+    columns, events, in_process, interrupt, json, linearization, nested, plot, remarks, summary, words,
 };
 use gyro_assembled::{Form, QuickLookError, quick_look};
+use gyro_codegen::Module;
 use gyro_runner::{Event, Sample, Start, Summary};
 use std::path::{Path, PathBuf};
 
@@ -24,15 +23,21 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let opened = folder(args, &scene)?;
     let folder = opened.as_ref().map(Folder::path);
     let mut outcome = Outcome::default();
-    match run(&mut scene, &mut outcome) {
-        Ok(()) => {}
+    let proof = match run(&mut scene, &mut outcome) {
+        Ok(proof) => proof,
         Err(Failure::Interrupted(_)) => return Err(keep_the_part(args, &scene, &outcome, folder)?),
         Err(failure) => return Err(keep_what_there_is(&scene, &outcome.samples, folder, failure)),
-    }
-    let written = match folder {
+    };
+    let mut written = match folder {
         Some(folder) => write_files(&scene, &outcome, folder)?,
         None => Vec::new(),
     };
+    let (standing, module) = settled(proof)?;
+    if let (Some(folder), Some(module)) = (folder, module) {
+        let path = module_path(&scene.results, folder);
+        write::write(&path, &module.code, Known::Record)?;
+        written.push(path);
+    }
     // Whatever becomes of the verdict, the run is told.
     let (verdict, unjudged) = match args.verify.then(|| judged(&scene, &outcome)) {
         Some(Ok(verdict)) => (Some(verdict), None),
@@ -47,6 +52,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let linear = outcome.linear.as_ref().filter(|_| args.linearize.is_some());
     let text = if args.json {
         let mut object = json::object(&scene, &outcome, (verdict.as_ref(), linear), &written);
+        object["proof"] = standing.map(Standing::words).into();
         if let Some(why) = unjudged {
             object["verdict"] = json::unjudged(why);
         }
@@ -55,14 +61,9 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         let linear = linear.map_or(String::new(), |linear| linearization::text(&scene.model, linear));
         let verdict = verdict.map(|verdict| verdict::text(&verdict, &outcome));
         let verdict = verdict.or(unjudged.map(verdict::unjudged)).unwrap_or_default();
-        summary::text(&scene, &outcome, &(verdict + &linear), &written)
+        summary::text(&scene, (&outcome, standing), &(verdict + &linear), &written)
     };
     say(&text)?;
-    if !args.json
-        && let Some(words) = quicker::words(outcome.took)
-    {
-        remarks::note(&words);
-    }
     worthless.map_or(Ok(()), Err)
 }
 
@@ -70,7 +71,7 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
 fn judged(scene: &Scene, outcome: &Outcome) -> Result<Verdict, Failure> {
     verdict::verdict(scene, outcome, |companion| {
         let mut other = Outcome::default();
-        run(&mut companion.clone(), &mut other).map(|()| other)
+        run(&mut companion.clone(), &mut other).map(|_| other)
     })
 }
 
@@ -78,26 +79,34 @@ fn judged(scene: &Scene, outcome: &Outcome) -> Result<Verdict, Failure> {
 pub(crate) fn simulate_scene(mut scene: Scene, folder: &Path) -> Result<(), Failure> {
     let opened = Folder::open(folder)?;
     let mut outcome = Outcome::default();
-    if let Err(failure) = run(&mut scene, &mut outcome) {
-        return Err(keep_what_there_is(&scene, &outcome.samples, Some(opened.path()), failure));
-    }
+    let proof = match run(&mut scene, &mut outcome) {
+        Ok(proof) => proof,
+        Err(failure) => {
+            return Err(keep_what_there_is(&scene, &outcome.samples, Some(opened.path()), failure));
+        }
+    };
     let written = write_files(&scene, &outcome, opened.path())?;
-    say(&summary::text(&scene, &outcome, "", &written))
+    let (standing, _) = settled(proof)?;
+    say(&summary::text(&scene, (&outcome, standing), "", &written))
 }
 
-/// Runs a scene; what there is up to a failure is kept in the outcome.
-pub(crate) fn run(scene: &mut Scene, outcome: &mut Outcome) -> Result<(), Failure> {
-    let mut took = Took::default();
+/// How the functions of a run stand, once its proof has ended or taken too long, and their text.
+pub(crate) fn settled(proof: Option<Proof>) -> Result<(Option<Standing>, Option<Module>), Failure> {
+    let Some(proof) = proof else { return Ok((None, None)) };
+    proof.settle().map(|(standing, module)| (Some(standing), module))
+}
+
+/// Runs a scene; what there is up to a failure is kept in the outcome. Gives the proof that was begun beside it.
+pub(crate) fn run(scene: &mut Scene, outcome: &mut Outcome) -> Result<Option<Proof>, Failure> {
+    let mut proof = None;
     follow(scene, outcome, |scene, tell| match scene.engine {
-        Engine::Generated => nested::simulate(scene, tell, &mut took),
-        #[cfg(feature = "jit")]
-        Engine::Jit => jit::simulate(scene, tell),
+        Engine::InProcess => in_process::simulate(scene, tell, &mut proof),
+        Engine::Generated => nested::simulate(scene, tell),
         Engine::Assembled => assembled(scene, Form::for_model(&scene.model), tell),
         Engine::Dense => assembled(scene, Form::Dense, tell),
         Engine::Recursive => assembled(scene, Form::Recursive, tell),
     })?;
-    outcome.took = took;
-    Ok(())
+    Ok(proof)
 }
 
 /// The same with whatever makes runs. One whose method was chosen and that turns out to be stiff is made again by a
@@ -192,7 +201,7 @@ fn folder(args: &SimulateArgs, scene: &Scene) -> Result<Option<Folder>, Failure>
     let opened = Folder::open(&folder)?;
     let files = plot::NAMES.iter().map(|plot| plot_path(name, plot, &folder));
     files
-        .chain([table_path(name, &folder), events_path(name, &folder)])
+        .chain([table_path(name, &folder), events_path(name, &folder), module_path(name, &folder)])
         .try_for_each(|path| write::check(&path, Known::Record))?;
     Ok(Some(opened))
 }
@@ -203,6 +212,10 @@ fn plot_path(name: &str, plot: &str, folder: &Path) -> PathBuf {
 
 fn events_path(name: &str, folder: &Path) -> PathBuf {
     folder.join(format!("{name}-events.csv"))
+}
+
+fn module_path(name: &str, folder: &Path) -> PathBuf {
+    folder.join(format!("{name}.rs"))
 }
 
 fn table_path(name: &str, folder: &Path) -> PathBuf {

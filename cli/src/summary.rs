@@ -1,6 +1,7 @@
 //! The summary that a run prints.
 
 use crate::args::Engine;
+use crate::proof::Standing;
 use crate::scene::Scene;
 use crate::verdict::Outcome;
 use crate::words::{count, number, table};
@@ -22,12 +23,12 @@ const FEW: usize = 3;
 /// The whole summary.
 pub(crate) fn text(
     scene: &Scene,
-    Outcome { samples, occurrences, summary: run, .. }: &Outcome,
+    (Outcome { samples, occurrences, summary: run, .. }, standing): (&Outcome, Option<Standing>),
     verdict: &str,
     written: &[PathBuf],
 ) -> String {
     let last = samples.last().expect("the start is a sample");
-    let mut text = head(scene, run, last);
+    let mut text = head(scene, (run, standing), last);
     if let Some(event) = events::end(&scene.model, occurrences) {
         let _ = writeln!(text, "ended by event {event}");
     }
@@ -48,7 +49,7 @@ pub(crate) fn of_part(scene: &Scene, last: &Sample, written: &[PathBuf]) -> Stri
         scene.model.name,
         last.t,
         scene.settings.t_end,
-        engine(scene),
+        engine(scene, None),
         scene.precision.name()
     );
     text += &motion(&scene.model, last);
@@ -62,7 +63,7 @@ fn files(written: &[PathBuf]) -> String {
     if written.is_empty() { lines } else { format!("\n{lines}") }
 }
 
-fn head(scene: &Scene, run: &Summary, last: &Sample) -> String {
+fn head(scene: &Scene, (run, standing): (&Summary, Option<Standing>), last: &Sample) -> String {
     let settings = &scene.settings;
     let method = method(&scene.approach, settings);
     let mut text = format!(
@@ -71,7 +72,7 @@ fn head(scene: &Scene, run: &Summary, last: &Sample) -> String {
         last.t,
         count(run.steps, "step"),
         number(last.t / run.steps.max(1) as f64, 6),
-        engine(scene),
+        engine(scene, standing),
         scene.precision.name()
     );
     let chosen = scene.chosen.to_string();
@@ -107,25 +108,25 @@ fn method(approach: &Approach, settings: &Settings) -> String {
 }
 
 /// The engine's name, and why it is not what it is elsewhere.
-fn engine(scene: &Scene) -> String {
+fn engine(scene: &Scene, standing: Option<Standing>) -> String {
     let name = scene.engine.name();
     match Careful::<f64>::supports(&scene.model) {
         Err(reason) if scene.engine == Engine::Assembled => format!("{name} (in its dense form: {reason})"),
-        _ if scene.engine.is_generated() => format!("{name}{}", searched(scene)),
+        _ if scene.engine.is_generated() => format!("{name}{}", searched(scene, standing)),
         _ => name.to_owned(),
     }
 }
 
 /// What was searched, and whether it was proved, where that is not as usual.
-fn searched(scene: &Scene) -> String {
+fn searched(scene: &Scene, standing: Option<Standing>) -> String {
     let effort = match scene.effort {
         Effort::Full => "",
         Effort::Quick => " (quick: few forms were searched)",
     };
-    let proof = match (scene.engine, scene.proves) {
-        (Engine::Generated, _) => "",
-        (_, true) => ", proved",
-        (_, false) => ", not proved",
+    let proof = match (scene.engine, standing) {
+        (Engine::Generated, _) => String::new(),
+        (_, Some(standing)) => format!(", {}", standing.words()),
+        (_, None) => ", not proved".to_owned(),
     };
     format!("{effort}{proof}")
 }

@@ -6,7 +6,6 @@
 
 use crate::args::{Engine, Precision};
 use crate::failure::Failure;
-use crate::quicker::Took;
 use crate::scene::Scene;
 use crate::words::{count, number, table};
 use crate::{columns, eigenvalues, equilibrium, remarks};
@@ -45,8 +44,6 @@ pub(crate) struct Outcome {
     pub(crate) stopped: Option<(f64, Vec<f64>)>,
     /// When it was found to be stiff for its method.
     pub(crate) stiff: Option<f64>,
-    /// Of a program of generated code.
-    pub(crate) took: Took,
 }
 
 /// Judges a run. `run` makes companions: one whose own energy balance is open, or whose joints come apart, is taken
@@ -88,10 +85,10 @@ fn companions(scene: &Scene) -> Vec<Scene> {
     let double = |(settings, approach): (Settings, Approach)| {
         // Only generated code has joint coordinates.
         let has_them = approach.coordinates != Coordinates::Joint || scene.engine.is_generated();
-        let engine = if has_them { scene.engine } else { Engine::Generated };
+        let engine = if has_them { scene.engine } else { Engine::InProcess };
         let approach = Approach { patience: None, leaves_stiff: false, ..approach };
         let settings = gyro_runner::closely(&settings, &approach);
-        Scene { precision: Precision::F64, engine, settings, approach, ..scene.clone() }
+        Scene { precision: Precision::F64, engine, settings, approach, proves: false, ..scene.clone() }
     };
     gyro_runner::companions(&scene.settings, &scene.approach).into_iter().map(double).collect()
 }

@@ -92,7 +92,11 @@ pub(crate) fn proved(model: &Model, module: Module) -> Result<Module, Failure> {
     Ok(Module { code, ..module })
 }
 
-fn judge(report: &Report) -> Result<(), Failure> {
+/// Refuses what is refuted, and warns of what is undecided.
+///
+/// # Errors
+/// The module is refuted.
+pub(crate) fn judge(report: &Report) -> Result<(), Failure> {
     if report.is_refuted() {
         let cure = "this is a mistake of the generator: please report it with the model file";
         return Err(Failure::Run(format!(

@@ -2,7 +2,7 @@
 
 use gyro_codegen::{Argument, Kernel, Scheduled, Variable};
 use gyro_sim::Scalar;
-use std::fmt::Debug;
+use std::fmt::{self, Debug};
 
 /// Computes kernels, whichever way, in numbers `T`.
 pub trait Engine<T>: Clone + Debug {
@@ -25,6 +25,29 @@ pub struct Arguments<'a, T> {
     pub out: &'a mut [T],
 }
 
+/// A kernel on its way to machine code: what a proof is about.
+#[derive(Debug)]
+pub struct Input<'a> {
+    /// Which one it is.
+    pub kernel: Kernel,
+    /// The function that Cranelift compiles, as text.
+    pub clif: String,
+    /// All constants of loops up to here, which functions read by their places.
+    pub tables: &'a [f64],
+}
+
+/// Why there is no machine code.
+#[derive(Debug)]
+pub struct NotCompiled(pub(crate) String);
+
+impl fmt::Display for NotCompiled {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the functions cannot be compiled in this process: {}", self.0)
+    }
+}
+
+impl std::error::Error for NotCompiled {}
+
 /// Where numbers of a mechanism stand in memory.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
@@ -40,7 +63,8 @@ pub(crate) enum Array {
     State,
     Given,
     Own,
-    /// Constants of loops.
+    /// Constants of loops, which machine code reads.
+    #[cfg_attr(not(feature = "machine-code"), expect(dead_code, reason = "tapes hold them"))]
     Tables,
     /// Curves of tables, three numbers each, then the arrays of loops.
     Work,
@@ -98,6 +122,7 @@ impl Shape {
     }
 
     /// Whether results take the place of what is read.
+    #[cfg(feature = "machine-code")]
     pub(crate) fn is_overwritten(&self) -> bool {
         self.overwritten.is_some()
     }
@@ -117,6 +142,7 @@ impl Shape {
     }
 
     /// Columns of an array of loops.
+    #[cfg(feature = "machine-code")]
     pub(crate) fn columns(&self, array: usize) -> usize {
         self.arrays[array].1
     }

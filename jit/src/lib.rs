@@ -1,7 +1,8 @@
-//! Generated mechanisms without a compiler: their kernels are compiled in this process, by Cranelift.
+//! Generated mechanisms without a compiler: their kernels are compiled in this process, by Cranelift, or interpreted.
 //!
 //! [`gyro_codegen::schedule`] gives the kernels of a model as data, the very operations that it writes as Rust. Here
-//! they become machine code ([`MachineCode`]) in a moment, or are interpreted in any number type ([`Interpreter`]).
+//! they become machine code (`MachineCode`, the feature `machine-code`) in a moment, or are interpreted in any number
+//! type ([`Interpreter`]).
 //! Either way the results have the bits of the module that rustc compiles, because the operations, their constants and
 //! the elementary functions are the same.
 //!
@@ -37,23 +38,29 @@
 //! ```
 #![deny(missing_docs)]
 
+#[cfg(feature = "machine-code")]
 mod calls;
+#[cfg(feature = "machine-code")]
 mod clif;
 mod contract;
 mod description;
 mod engine;
 mod interpret;
+#[cfg(feature = "machine-code")]
 mod line;
+#[cfg(feature = "machine-code")]
 mod machine_code;
 mod mechanism;
 mod native;
 mod run;
 
+#[cfg(feature = "machine-code")]
 pub use calls::{Library, NotLoaded, Sizes};
 pub use contract::{Independent, OnHeap};
-pub use engine::{Arguments, Engine};
+pub use engine::{Arguments, Engine, Input, NotCompiled};
 pub use interpret::Interpreter;
-pub use machine_code::{Input, MachineCode, NotCompiled};
+#[cfg(feature = "machine-code")]
+pub use machine_code::MachineCode;
 pub use mechanism::InProcess;
 pub use native::Native;
 pub use run::{Runs, answer, simulate};
@@ -64,11 +71,19 @@ use gyro_sim::{Real, Scalar};
 use mechanism::Shared;
 use std::error::Error;
 
-/// A mechanism of compiled kernels.
-pub type Compiled<T> = InProcess<T, MachineCode<T>>;
+/// What computes kernels fastest in this process.
+#[cfg(feature = "machine-code")]
+pub type Fastest<T> = MachineCode<T>;
+
+/// What computes kernels fastest in this process.
+#[cfg(not(feature = "machine-code"))]
+pub type Fastest<T> = Interpreter<T>;
+
+/// A mechanism of compiled kernels; without the feature `machine-code`, of interpreted ones.
+pub type Compiled<T> = InProcess<T, Fastest<T>>;
 
 /// A mechanism of interpreted kernels.
-pub type Interpreted<T> = InProcess<T, Interpreter>;
+pub type Interpreted<T> = InProcess<T, Interpreter<T>>;
 
 /// Derives the kernels of a model and compiles them.
 ///
@@ -92,7 +107,7 @@ pub fn compile_scheduled<T: Native>(
     told: Option<&mut dyn FnMut(Input<'_>)>,
 ) -> Result<Compiled<T>, NotCompiled> {
     let shared = Shared::new(model, scheduled);
-    let code = MachineCode::compile(&shared.scheduled, shared.layout, told)?;
+    let code = Fastest::compile(&shared.scheduled, shared.layout, told)?;
     Ok(InProcess::with(shared, code))
 }
 
@@ -103,7 +118,7 @@ impl<T: Native + Real> Compiled<T> {
     /// # Errors
     /// As [`compile_scheduled`].
     pub fn compiled<U: Native>(&self) -> Result<Compiled<U>, NotCompiled> {
-        let code = MachineCode::compile(&self.shared.scheduled, self.shared.layout, None)?;
+        let code = Fastest::compile(&self.shared.scheduled, self.shared.layout, None)?;
         let mut other = InProcess::with(self.shared.clone(), code);
         for (index, value) in self.parameters().iter().enumerate() {
             other.set_parameter(index, U::constant(value.to_f64()));
@@ -115,7 +130,7 @@ impl<T: Native + Real> Compiled<T> {
 impl<T: Real, E: Engine<T>> InProcess<T, E> {
     /// The same mechanism in other numbers, interpreted, with the same parameters and the model file's inputs.
     pub fn interpreted<U: Scalar>(&self) -> Interpreted<U> {
-        let engine = Interpreter { layout: self.shared.layout };
+        let engine = Interpreter::new(&self.shared.scheduled, self.shared.layout);
         let mut other = InProcess::with(self.shared.clone(), engine);
         for (index, value) in self.parameters().iter().enumerate() {
             other.set_parameter(index, U::constant(value.to_f64()));

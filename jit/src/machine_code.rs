@@ -2,7 +2,7 @@
 
 use crate::calls::{Code, Finished, Function};
 use crate::clif::{FUNCTIONS, Width, Writer};
-use crate::engine::{Arguments, Engine, Layout, Shape, reads_curves, write_curves};
+use crate::engine::{Arguments, Engine, Input, Layout, NotCompiled, Shape, reads_curves, write_curves};
 use crate::native::Native;
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::UserFuncName;
@@ -33,29 +33,6 @@ impl<T: Native> fmt::Debug for MachineCode<T> {
         f.debug_struct("MachineCode").field("kernels", &self.code.functions.iter().flatten().count()).finish()
     }
 }
-
-/// A kernel on its way to machine code: what a proof is about.
-#[derive(Debug)]
-pub struct Input<'a> {
-    /// Which one it is.
-    pub kernel: Kernel,
-    /// The function that Cranelift compiles, as text.
-    pub clif: String,
-    /// All constants of loops up to here, which functions read by their places.
-    pub tables: &'a [f64],
-}
-
-/// Why there is no machine code.
-#[derive(Debug)]
-pub struct NotCompiled(String);
-
-impl fmt::Display for NotCompiled {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the functions cannot be compiled in this process: {}", self.0)
-    }
-}
-
-impl std::error::Error for NotCompiled {}
 
 impl From<ModuleError> for NotCompiled {
     fn from(error: ModuleError) -> Self {

@@ -31,16 +31,15 @@ pub struct SimulateArgs {
     /// Model file, anywhere on disk
     #[arg(value_name = "MODEL")]
     pub(crate) model: PathBuf,
-    /// Engine that computes the motion [default: generated]
+    /// Engine that computes the motion [default: in-process]
     #[arg(long, value_enum)]
     pub(crate) engine: Option<Engine>,
     /// How long generated code is searched for short forms
     #[arg(long, value_enum, default_value_t = Effort::Full)]
     pub(crate) effort: Effort,
-    /// Prove the functions of --engine jit before the run, as those of --engine generated always are
-    #[cfg(feature = "jit")]
+    /// Do not prove the functions that run; in this process they are proved beside the run
     #[arg(long)]
-    pub(crate) prove: bool,
+    pub(crate) no_prove: bool,
     /// Length of the run
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) t_end: Option<f64>,
@@ -121,18 +120,19 @@ pub struct SimulateArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Engine {
-    /// Generated code, compiled on demand
+    /// Generated code in this process: compiled at once, or interpreted where this program has no compiler
+    #[value(alias = "jit")]
+    InProcess,
+    /// Generated code as a program that rustc compiles: the same results to the last bit, after many seconds
     Generated,
-    /// Generated code, compiled in this process: the same results to the last bit, without rustc; starts within seconds
-    #[cfg(feature = "jit")]
-    Jit,
     /// The runtime-assembled model, in its careful form where the mechanism allows it (trees of revolute, spherical and
-    /// fixed joints); starts immediately
+    /// fixed joints)
     Assembled,
-    /// The runtime-assembled model in the paper's plain dense form
+    /// The runtime-assembled model in the paper's plain dense form, to compare with
+    #[value(hide = true)]
     Dense,
-    /// The runtime-assembled model as a recursion in joint coordinates: for trees of any joints; the fastest engine
-    /// that needs no compilation
+    /// The runtime-assembled model as a recursion in joint coordinates, to compare with
+    #[value(hide = true)]
     Recursive,
 }
 
@@ -160,7 +160,7 @@ pub(crate) enum Precision {
 impl SimulateArgs {
     /// The engine that was asked for.
     pub(crate) fn engine(&self) -> Engine {
-        self.engine.unwrap_or(Engine::Generated)
+        self.engine.unwrap_or(Engine::InProcess)
     }
 
     /// The integrator that was asked for.
@@ -181,15 +181,6 @@ impl SimulateArgs {
 }
 
 impl Engine {
-    /// Of generated code, the one that answers first.
-    pub(crate) fn quickest() -> Self {
-        #[cfg(feature = "jit")]
-        let engine = Self::Jit;
-        #[cfg(not(feature = "jit"))]
-        let engine = Self::Generated;
-        engine
-    }
-
     /// Whether it computes what the generator derives.
     pub(crate) fn is_generated(self) -> bool {
         !matches!(self, Self::Assembled | Self::Dense | Self::Recursive)
@@ -198,9 +189,8 @@ impl Engine {
     /// Its name on the command line.
     pub(crate) fn name(self) -> &'static str {
         match self {
+            Self::InProcess => "in-process",
             Self::Generated => "generated",
-            #[cfg(feature = "jit")]
-            Self::Jit => "jit",
             Self::Assembled => "assembled",
             Self::Dense => "dense",
             Self::Recursive => "recursive",

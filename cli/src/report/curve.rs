@@ -136,8 +136,7 @@ impl Setting {
 pub(crate) fn who(engine: Engine) -> &'static str {
     match engine {
         Engine::Generated => "generated",
-        #[cfg(feature = "jit")]
-        Engine::Jit => "generated, compiled in the process",
+        Engine::InProcess => "generated, compiled in the process",
         Engine::Recursive => "assembled, recursive",
         Engine::Assembled => "assembled, careful",
         Engine::Dense => "assembled, dense",

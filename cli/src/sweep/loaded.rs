@@ -1,7 +1,7 @@
 //! A study file with its model.
 
 use super::vocabulary::vocabulary;
-use crate::args::{Effort, Engine, Precision, SimulateArgs};
+use crate::args::{Effort, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::scene::{self, Scene};
 use crate::verdict::Outcome;
@@ -91,8 +91,7 @@ fn settle(study: &Study, scene: &mut Scene) -> Result<(), Failure> {
             )));
         }
     } else if scene.approach.leaves_stiff {
-        let mut own =
-            Scene { engine: Engine::quickest(), effort: gyro_codegen::Effort::Quick, ..scene.clone() };
+        let mut own = Scene { effort: gyro_codegen::Effort::Quick, ..scene.clone() };
         // Why it fails, if it does, scenarios say for themselves.
         let _ = simulate::run(&mut own, &mut Outcome::default());
         (scene.approach, scene.chosen) = (own.approach, own.chosen);
@@ -112,8 +111,7 @@ fn arguments(study: &Study, model: PathBuf) -> SimulateArgs {
         model,
         engine: None,
         effort: Effort::Full,
-        #[cfg(feature = "jit")]
-        prove: false,
+        no_prove: true,
         t_end: run.t_end,
         step: run.step,
         correct_every: run.correct_every,

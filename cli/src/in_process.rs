@@ -1,27 +1,30 @@
-//! Runs of generated mechanisms that are compiled in this process.
+//! Runs of generated mechanisms in this process, compiled there or interpreted.
 
 use crate::args::Precision;
 use crate::failure::Failure;
-
+use crate::proof::{self, Proof};
 use crate::runs::Runs;
 use crate::scene::Scene;
-use crate::verify::verify_quickly;
 use crate::{interrupt, progress};
-use gyro_codegen::{Functions, Kernel};
+use gyro_codegen::Functions;
 use gyro_jit::{Compiled, Input, Native, compile_scheduled};
 use gyro_runner::{Event, Summary};
 use gyro_sim::Real;
-use gyro_verifier::{Clif, same_in_clif};
 use std::io;
 
-/// Generates, compiles and runs; `tell` hears of samples and progress.
+/// Generates, compiles and runs; `tell` hears of samples and progress. What runs is proved beside it.
 ///
 /// A run that fails for a reason which a linearisation explains is made again with one, of which the reason is all that
 /// is heard, as runs of compiled programs are.
-pub(crate) fn simulate(scene: &Scene, tell: &mut dyn FnMut(Event<'_>)) -> Result<Summary, Failure> {
+pub(crate) fn simulate(
+    scene: &Scene,
+    tell: &mut dyn FnMut(Event<'_>),
+    proof: &mut Option<Proof>,
+) -> Result<Summary, Failure> {
+    *proof = None;
     explained(scene, tell, |runs, tell| match scene.precision {
-        Precision::F32 => run_in::<f32>(scene, runs, tell),
-        Precision::F64 => run_in::<f64>(scene, runs, tell),
+        Precision::F32 => run_in::<f32>(scene, runs, tell, &mut None),
+        Precision::F64 => run_in::<f64>(scene, runs, tell, proof),
     })
 }
 
@@ -29,7 +32,7 @@ pub(crate) fn simulate(scene: &Scene, tell: &mut dyn FnMut(Event<'_>)) -> Result
 pub(crate) fn explained(
     scene: &Scene,
     tell: &mut dyn FnMut(Event<'_>),
-    run: impl Fn(Option<Runs>, &mut dyn FnMut(Event<'_>)) -> Result<Outcome, Failure>,
+    mut run: impl FnMut(Option<Runs>, &mut dyn FnMut(Event<'_>)) -> Result<Outcome, Failure>,
 ) -> Result<Summary, Failure> {
     let runs = Runs::of(scene);
     match run(runs, tell)? {
@@ -58,8 +61,14 @@ fn run_in<T: Native + Real>(
     scene: &Scene,
     runs: Option<Runs>,
     tell: &mut dyn FnMut(Event<'_>),
+    proof: &mut Option<Proof>,
 ) -> Result<Outcome, Failure> {
-    let mut mechanism = compiled::<T>(scene, &functions(runs))?;
+    let functions = functions(runs);
+    // Of single precision the text is proved where it is generated; machine code is compared in double precision only.
+    let proves = scene.proves && T::BITS == 64 && proof.is_none();
+    let begun = proves.then(|| Proof::begin(scene, &functions));
+    let mut mechanism = compiled::<T>(scene, &functions, begun.as_ref())?;
+    *proof = begun.or_else(|| proof.take());
     let _interruptible = interrupt::Run::begin();
     let outcome = follow(scene, runs, &mut mechanism, &mut interrupt::interruptible(tell));
     match outcome {
@@ -91,45 +100,23 @@ pub(crate) fn follow<T: Native + Real>(
     gyro_jit::simulate(mechanism, runs, (&scene.settings, &scene.approach), &scene.start, tell)
 }
 
-/// Generates and compiles these functions, and proves them if that was asked for.
-pub(crate) fn compiled<T: Native>(scene: &Scene, functions: &Functions) -> Result<Compiled<T>, Failure> {
-    if scene.proves && T::BITS != 64 {
-        return Err(Failure::Usage("--prove is for --precision f64".to_owned()));
-    }
+/// Generates and compiles these functions; a proof under way hears of what is compiled.
+pub(crate) fn compiled<T: Native>(
+    scene: &Scene,
+    functions: &Functions,
+    proof: Option<&Proof>,
+) -> Result<Compiled<T>, Failure> {
     let _spinner = progress::deriving(&scene.page);
     let usage = |words: String| Failure::Usage(words);
     let scheduled = gyro_codegen::schedule(&scene.page, functions, scene.effort);
     let scheduled = scheduled.map_err(|error| usage(error.to_string()))?;
-    let (mut given, mut tables) = (Vec::new(), Vec::new());
-    let mut told = |input: Input<'_>| {
-        given.push((input.kernel, input.clif));
-        tables = input.tables.to_vec();
-    };
-    let told = scene.proves.then_some(&mut told as &mut dyn FnMut(Input<'_>));
+    let mut given = proof::Compiled::default();
+    let mut told = |input: Input<'_>| given.hear(input);
+    let told = proof.map(|_| &mut told as &mut dyn FnMut(Input<'_>));
     let compiled =
         compile_scheduled(&scene.page, scheduled, told).map_err(|error| usage(error.to_string()))?;
-    if scene.proves {
-        prove(scene, functions, (&given, &tables))?;
+    if let Some(proof) = proof {
+        proof.compare_with(given);
     }
     Ok(compiled)
-}
-
-/// Proves the text of the same functions, and that Cranelift was given what this text says.
-fn prove(
-    scene: &Scene,
-    functions: &Functions,
-    (given, tables): (&[(Kernel, String)], &[f64]),
-) -> Result<(), Failure> {
-    let module = gyro_codegen::generate_by_effort(&scene.page_name, &scene.page, functions, scene.effort);
-    let module = module.map_err(|error| Failure::Usage(error.to_string()))?;
-    verify_quickly(&scene.page, &module)?;
-    let clif: Vec<Clif<'_>> =
-        given.iter().map(|(kernel, text)| Clif { name: kernel.name(), text, tables }).collect();
-    let same = same_in_clif(&scene.page, (&module.code, &module.constants), &clif);
-    same.map(|_| ()).map_err(|refusal| {
-        Failure::Run(format!(
-            "what is compiled is not what was proved; this is a mistake of gyro-jit: please report it with the model \
-             file\n{refusal}"
-        ))
-    })
 }
