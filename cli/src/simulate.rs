@@ -33,6 +33,8 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         None => Vec::new(),
     };
     let (standing, module) = settled(proof)?;
+    // A linearisation asks for functions of its own, a run for those that a program needs.
+    let module = module.filter(|_| args.linearize.is_none());
     if let (Some(folder), Some(module)) = (folder, module) {
         let path = module_path(&scene.results, folder);
         write::write(&path, &module.code, Known::Record)?;

@@ -65,7 +65,7 @@ fn two_runs_are_on_one_page() {
     let head = head(&page);
     let names: Vec<&str> =
         head["scenes"].as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap()).collect();
-    assert_eq!(names, ["length = 0.5, recursive", "length = 0.4, dense"]);
+    assert_eq!(names, ["length = 0.5, in-process", "length = 0.4, dense"]);
     for (scene, length) in head["scenes"].as_array().unwrap().iter().zip([0.5, 0.4]) {
         assert_eq!(scene["n"], 11);
         assert_eq!(scene["mechanism"]["joints"][0]["kind"], "Revolute");

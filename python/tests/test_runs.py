@@ -177,7 +177,7 @@ warnings.simplefilter("ignore", gyro.RunWarning)
 assert not shutil.which("cargo") and not shutil.which("rustc")
 for file in sys.argv[1:]:
     run = gyro.load(file).simulate(0.01, step=1e-3)
-    assert run.summary["engine"] == "jit", run.summary
+    assert run.summary["engine"] == "in-process", run.summary
     print(np.array([run[name] for name in run.names]).tobytes().hex())
 """
 

@@ -99,11 +99,6 @@ fn compiles_to_wasm() -> bool {
     ["clang", "wasm-ld"].iter().all(|tool| Command::new(tool).arg("--version").output().is_ok())
 }
 
-/// Rigid stops and friction that sticks are for compiled code.
-fn touches(file: &str) -> bool {
-    fs::read_to_string(root().join(file)).is_ok_and(|page| page.contains("[[contact]]"))
-}
-
 /// Runs a command of the tool as it is typed, but that it takes little time and writes elsewhere; of the long ones
 /// nothing but that their options are known. What `new` makes is there for the commands after it.
 fn run(command: &[String], folder: &Path) -> Output {
@@ -134,13 +129,11 @@ fn run(command: &[String], folder: &Path) -> Output {
             }
             add(&["--t-end", "0.01"]);
         }
-        "simulate" if names_a_file(&command) && !has("--linearize") && !touches(&command[3]) => {
-            if !has("--engine") {
-                add(&["--engine", "assembled"]);
+        "simulate" if names_a_file(&command) => {
+            if !has("--linearize") {
+                add(&["--t-end", "0.01"]);
             }
-            add(&["--t-end", "0.01", "--out", &folder.join("run").display().to_string()]);
-            // Only compiled code does joint coordinates.
-            args.iter_mut().filter(|word| *word == "joint").for_each(|word| "maximal".clone_into(word));
+            add(&["--out", &folder.join("run").display().to_string()]);
         }
         "inspect" if names_a_file(&command) && !has("--no-compile") => add(&["--no-compile"]),
         "import" | "generate" | "inspect" | "check" | "export" if names_a_file(&command) => {}

@@ -81,7 +81,17 @@ fn inputs_come_from_the_page_from_numbers_and_from_tables() {
     close(&constant["outputs"]["spin"][5], 12.0);
     close(&constant["outputs"]["energies"][0], 0.25 * 144.0 + 0.25 + 0.25 + 0.05 * 49.0);
     assert_eq!(constant["degrees_of_freedom"], 4);
-    let fixed = ["motor.toml", "--coordinates", "maximal", "--step", "1e-3", "--every", "0.5"];
+    let fixed = [
+        "motor.toml",
+        "--engine",
+        "generated",
+        "--coordinates",
+        "maximal",
+        "--step",
+        "1e-3",
+        "--every",
+        "0.5",
+    ];
     let generated = json(&folder, &[&fixed[..], &["--input", "torque=ramp.csv"]].concat());
     // The ramp is held over each of its thousand steps, then stays: Σ 2 k/1000 · 1e-3 = 0.999, and 2 N·m for a second.
     let ramp = run(&["--input", "torque=ramp.csv"]);

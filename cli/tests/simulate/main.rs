@@ -66,6 +66,7 @@ fn json_is_one_object_and_both_engines_give_the_same() {
             "outputs",
             "poses_passed",
             "poses_stepped_over",
+            "proof",
             "redundant",
             "rejected_steps",
             "run_time_s",
