@@ -13,6 +13,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     use std::path::Path;
     use std::{env, fs};
 
+    println!("cargo::rerun-if-changed=src/golden");
     let manifest = fs::read_to_string("Cargo.toml")?;
     let mut wanted = Vec::new();
     for page in gyro_build::pages(Path::new("../models"))? {

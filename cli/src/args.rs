@@ -288,7 +288,7 @@ fn not_negative(text: &str) -> Result<f64, String> {
 /// otherwise idle.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  {program} report                             every model in models/, to out/report; the committed part, to docs/report
+  {program} report                             every model in models/, to out/report; its index, to docs/report
   {program} report models/gyroscope.toml
   {program} report --quick                     a minute, to target/report
   {program} report ~/gimbal.toml --out ~/gimbal-report")]
@@ -398,7 +398,7 @@ mod tests {
             (&["--correction", "baumgarte"], "such as baumgarte=100"),
             (&["--correct-when", "steps=0"], "such as steps=5"),
             (&["--step", "1e-3", "--tolerance", "1e-6"], "cannot be used with"),
-            (&["--engine", "steam"], ", assembled, dense, recursive"),
+            (&["--engine", "steam"], "in-process, generated, assembled"),
             (&["--methd", "direct"], "--method"),
         ] {
             let found = simulate(args).unwrap_err();

@@ -22,7 +22,7 @@ const CONSPICUOUS: f64 = 10.0;
 /// How to read the tables.
 const HEAD: &str = "# Rounding of generated code
 
-Made by `cargo xtask verify --rounding > docs/rounding.md`. A proof says nothing about rounding; so it is measured here.
+Made by `cargo xtask verify --rounding`. A proof says nothing about rounding; so it is measured here.
 
 Each function runs in `f64` and `f32`, and in `f64` in two forms of the [runtime-assembled
 model](glossary.md#runtime-assembled-model), the careful and the dense one, at the same states, and is compared with

@@ -1,7 +1,6 @@
 //! `cargo xtask report` from the outside.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -104,33 +103,6 @@ fn a_mistake_in_any_page_is_known_before_anything_is_compiled() {
     let words = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{words}");
     assert!(words.contains("nowhere.toml cannot be read") && !folder.0.join("out").exists(), "{words}");
-}
-
-/// The pages of the report that are kept in the repository, and their figures: nothing else, and no link to anything
-/// else.
-#[test]
-fn what_is_kept_links_only_what_is_kept() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/report");
-    let files = |folder: &Path| -> BTreeSet<String> {
-        let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-        let files = entries.filter(|path| path.is_file());
-        files.map(|path| path.file_name().unwrap().to_string_lossy().into_owned()).collect()
-    };
-    let (pages, figures) = (files(&folder), files(&folder.join("images")));
-    let (mut found_pages, mut found_figures) = (BTreeSet::new(), BTreeSet::new());
-    for page in &pages {
-        let text = fs::read_to_string(folder.join(page)).unwrap();
-        for target in text.split("](").skip(1).map(|rest| rest.split(')').next().unwrap().to_owned()) {
-            match target.strip_prefix("images/") {
-                Some(figure) => found_figures.insert(figure.to_owned()),
-                None => found_pages.insert(target),
-            };
-        }
-    }
-    assert_eq!(pages, found_pages);
-    assert_eq!(figures, found_figures);
-    let index = fs::read_to_string(folder.join("index.md")).unwrap();
-    assert!(index.contains("`cargo xtask report`") && index.contains("`out/report`"), "how to make the rest");
 }
 
 /// A mass on a spring that dry friction brings to rest, half a swing shorter each time.

@@ -42,16 +42,16 @@ pub(crate) fn add(study: &Study, machine: &str, folder: &Path) -> Result<(), Fai
         &study.lab.name,
         study.goals.iter().map(with_name).collect(),
     )?;
-    let page = page(scenes, goals, machine, None);
+    let page = page(scenes, goals, machine, false);
     own(&folder.join("index.md"), &page.markdown())?;
     own(&folder.join("index.html"), &page.html("gyro-sim: error against run time"))?;
     Ok(())
 }
 
-/// The index of a whole report for a folder that has the pages of some scenes only.
-pub(crate) fn kept(folder: &Path, machine: &str, kept: &[&str]) -> String {
+/// The index of a whole report for a folder that has no pages of scenes.
+pub(crate) fn kept(folder: &Path, machine: &str) -> String {
     let [scenes, goals] = ["index.csv", "goals.csv"].map(|file| rows(&folder.join(file)));
-    page(scenes, goals, machine, Some(kept)).markdown()
+    page(scenes, goals, machine, true).markdown()
 }
 
 /// Whether the index of a folder has a line for each of these model files.
@@ -116,8 +116,8 @@ fn row(study: &Study) -> Vec<String> {
     ]
 }
 
-/// The page; `kept` are the scenes whose pages are beside it, unless all are.
-fn page(scenes: Vec<Vec<String>>, goals: Vec<Vec<String>>, machine: &str, kept: Option<&[&str]>) -> Page {
+/// The page; the pages of the scenes are beside it unless it is alone.
+fn page(scenes: Vec<Vec<String>>, goals: Vec<Vec<String>>, machine: &str, is_alone: bool) -> Page {
     let mut page = Page::default();
     page.heading(1, "Error against run time");
     page.text(format!(
@@ -125,14 +125,14 @@ fn page(scenes: Vec<Vec<String>>, goals: Vec<Vec<String>>, machine: &str, kept: 
          hand-derived second (the paper's scene in minimal coordinates by RK4, 10 000 steps) in the same process; errors are counted from \
          reference solutions of their own."
     ));
-    if kept.is_some() {
+    if is_alone {
         page.text(
-            "Only the pages with a link are kept here. `cargo xtask report` writes those of all scenes, each also as one HTML file, and the raw \
-             data to `out/report`; `cargo xtask report models/torsion.toml` those of one, whose line here is then new.",
+            "`cargo xtask report` writes a page for each scene, with figures, as Markdown and as one HTML file, and the raw data \
+             to `out/report`; `cargo xtask report models/torsion.toml` those of one, whose line here is then new.",
         );
     }
     let linked = |mut row: Vec<String>| {
-        if kept.is_none_or(|kept| kept.contains(&row[0].as_str())) {
+        if !is_alone {
             row[0] = format!("[{0}]({0}.md)", row[0]);
         }
         row
@@ -155,13 +155,13 @@ mod tests {
     use crate::files::tests::Folder;
 
     #[test]
-    fn only_kept_pages_are_linked() {
+    fn pages_that_are_there_are_linked() {
         let row = |name: &str| [name, "", "", "", "", "", "", "1", "0"].map(str::to_owned).to_vec();
         let rows = || vec![row("gyroscope"), row("torsion")];
-        let all = page(rows(), Vec::new(), "m", None).markdown();
+        let all = page(rows(), Vec::new(), "m", false).markdown();
         assert!(all.contains("[torsion](torsion.md)") && !all.contains("out/report"), "{all}");
-        let some = page(rows(), Vec::new(), "m", Some(&["gyroscope"])).markdown();
-        assert!(some.contains("[gyroscope](gyroscope.md)") && some.contains("| torsion |"), "{some}");
+        let some = page(rows(), Vec::new(), "m", true).markdown();
+        assert!(some.contains("| gyroscope |") && some.contains("| torsion |"), "{some}");
         assert!(some.contains("`out/report`") && !some.contains("](torsion.md)"), "{some}");
     }
 

@@ -3,7 +3,7 @@
 //! ```text
 //! model file ─lab─▶ programs ─explore, drift, stability─▶ points, long runs, maps ─best, order, goals─▶ tables
 //!    ─figures, chart─▶ SVG ─page─▶ NAME.md, NAME.html ─data─▶ CSV ─index─▶ index.md, index.html
-//!    ─kept─▶ docs/report, if all scenes were measured
+//!    ─index─▶ docs/report/index.md, if all scenes were measured
 //! ```
 
 mod best;
@@ -17,7 +17,6 @@ mod explore;
 mod figures;
 mod goals;
 mod index;
-mod kept;
 mod lab;
 mod limits;
 mod order;
@@ -64,13 +63,13 @@ pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
         missed.extend(study.goals.into_iter().filter(|goal| !goal.is_met()));
         eprintln!("wrote {}", folder.join(format!("{}.md", study.lab.name)).display());
     }
-    // Pages of some scenes replace what is kept of them, if all others stand in the index.
+    // The index is kept, if all scenes stand in it.
     let shipped = files::workspace().map(|root| shipped(&root.join("models"))).transpose()?;
     let is_whole = shipped.is_some_and(|shipped| index::has_all(&folder, &shipped));
     if is_whole && args.out.is_none() && !args.quick {
-        let docs = root.join("docs").join("report");
-        kept::keep(&folder, &docs, &machine)?;
-        eprintln!("wrote what is kept of it to {}", docs.display());
+        let index = root.join("docs").join("report").join("index.md");
+        write::own(&index, &index::kept(&folder, &machine))?;
+        eprintln!("wrote {}, which is kept", index.display());
     }
     judge(&missed, args.quick)
 }
