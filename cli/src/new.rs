@@ -34,7 +34,7 @@ pub(crate) fn new(args: &NewArgs) -> Result<(), Failure> {
     create(&path, &text)?;
     let (program, model) = (program(), path.display());
     let words = format!(
-        "wrote {model}\n\nNext:\n  {program} check {model}\n  {program} simulate {model} --engine assembled\n  \
+        "wrote {model}\n\nNext:\n  {program} check {model}\n  {program} simulate {model}\n  \
          {program} generate {model}\n\nThe first says what the mechanism is, the second simulates it and plots the \
          motion to out/{},\nthe third writes its equations of motion as Rust.\n",
         args.name

@@ -37,7 +37,7 @@ pub(crate) struct Compiled {
 #[derive(Debug)]
 enum News {
     Written(Module),
-    Ended(Result<(Report, Module), Failure>),
+    Ended(Box<Result<(Report, Module), Failure>>),
 }
 
 /// What is known of the functions of a run when it is over.
@@ -96,7 +96,7 @@ impl Proof {
             match self.news.recv_timeout(left) {
                 Ok(News::Written(module)) => written = Some(module),
                 Ok(News::Ended(end)) => {
-                    let (report, module) = end?;
+                    let (report, module) = (*end)?;
                     judge(&report)?;
                     let standing = match report.is_proved() {
                         true if cfg!(feature = "jit") => Standing::Proved,
@@ -134,7 +134,7 @@ fn prove(
 ) -> Option<()> {
     let module = match gyro_codegen::generate_by_effort(name, page, functions, effort) {
         Ok(module) => module,
-        Err(error) => return tell.send(News::Ended(Err(Failure::Usage(error.to_string())))).ok(),
+        Err(error) => return tell.send(News::Ended(Box::new(Err(Failure::Usage(error.to_string()))))).ok(),
     };
     tell.send(News::Written(module.clone())).ok()?;
     let (code, report) = with_proof(page, &module.code, &module.constants, Depth::Quick);
@@ -152,5 +152,54 @@ fn prove(
              file\n{refusal}"
         ))
     });
-    tell.send(News::Ended(end)).ok()
+    tell.send(News::Ended(Box::new(end))).ok()
+}
+
+#[cfg(all(test, feature = "jit"))]
+mod tests {
+    use super::*;
+    use crate::{Cli, Command};
+    use clap::Parser;
+
+    fn pendulum() -> (Scene, Functions) {
+        let cli = Cli::try_parse_from(["gyro", "simulate", "../examples/pendulum.toml"]).unwrap();
+        let Command::Simulate(args) = cli.command else { panic!("simulate") };
+        (Scene::new(&args).unwrap(), Functions::of_solvers())
+    }
+
+    /// What Cranelift is given.
+    fn given((scene, functions): &(Scene, Functions)) -> Compiled {
+        let scheduled = gyro_codegen::schedule(&scene.page, functions, scene.effort).unwrap();
+        let mut given = Compiled::default();
+        let mut told = |input: Input<'_>| given.hear(input);
+        gyro_jit::compile_scheduled::<f64>(&scene.page, scheduled, Some(&mut told)).unwrap();
+        given
+    }
+
+    #[test]
+    fn what_runs_is_proved_and_what_is_not_what_was_proved_is_refused() {
+        let of = pendulum();
+        let settled = |compiled| {
+            let proof = Proof::begin(&of.0, &of.1);
+            proof.compare_with(compiled);
+            proof.settle()
+        };
+        let (standing, module) = settled(given(&of)).unwrap();
+        assert_eq!(standing, Standing::Proved);
+        assert!(module.unwrap().code.contains("proved"));
+        let mut other = given(&of);
+        let (_, text) = other.kernels.iter_mut().find(|(_, text)| text.contains("fmul")).unwrap();
+        *text = text.replacen("fmul", "fadd", 1);
+        let refused = settled(other).unwrap_err();
+        assert!(refused.words().contains("is not what was proved"), "{}", refused.words());
+    }
+
+    #[test]
+    fn a_proof_that_takes_too_long_is_not_waited_for() {
+        let of = pendulum();
+        // It waits for what is compiled, which does not come.
+        let (standing, module) = Proof::begin(&of.0, &of.1).settle().unwrap();
+        assert!(matches!(standing, Standing::NotRefuted(seconds) if seconds >= 3.0), "{standing:?}");
+        assert!(module.unwrap().code.contains("pub struct Pendulum"));
+    }
 }

@@ -86,7 +86,7 @@ impl Offers {
         let words = match (approach.coordinates, approach.correction) {
             _ if self.touches && !self.joint_space => {
                 "rigid stops and friction that sticks need joint coordinates: they are for generated code (--engine \
-                 generated or jit) of mechanisms that have them"
+                 in-process or generated) of mechanisms that have them"
             }
             (Coordinates::Maximal, _) if self.touches => {
                 "rigid stops and friction that sticks need joint coordinates: choose --coordinates joint"

@@ -16,14 +16,14 @@ use std::path::PathBuf;
     args_override_self = true,
     after_help = "Examples:
   {program} simulate models/gyroscope.toml
-  {program} simulate models/gyroscope.toml --engine assembled --t-end 10
+  {program} simulate models/gyroscope.toml --t-end 10
   {program} simulate models/gyroscope.toml --method direct --step 2e-4 --out /tmp/direct
   {program} simulate models/four-bar.toml --verify
   {program} simulate models/four-bar.toml --coordinates maximal --method rk4 --step 1e-4
   {program} simulate models/gyroscope.toml --linearize 0.5 --json
   {program} simulate my-gimbal.toml --set rotor_mass=0.085 --json
   {program} simulate my-gimbal.toml --input motor=torque.csv --input brake=0.01
-  {program} simulate examples/pendulum.toml --engine assembled --event hinge=0 --event \"hinge rate>0:stop\"
+  {program} simulate examples/pendulum.toml --event hinge=0 --event \"hinge rate>0:stop\"
 
 Exit codes: 0 success; 1 the run failed; 2 the request was invalid; 3 the run completed, but its result is worthless"
 )]

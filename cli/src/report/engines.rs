@@ -142,7 +142,7 @@ pub(crate) fn write(engines: &Result<Engines, String>, page: &mut Page) {
         Err(words) => return page.text(format!("There is nothing to compare: {words}.")),
     };
     let [rustc, ours] = &engines.ways;
-    let names = ["compiled by rustc", "compiled in the process (`--engine jit`)"];
+    let names = ["compiled by rustc", "compiled in the process (`--engine in-process`)"];
     let row = |(name, way): (&str, &Way)| {
         let evaluations = way.run.statistics.work.evaluations.max(1);
         #[expect(clippy::cast_precision_loss, reason = "counts of evaluations stay below 2⁵³")]
