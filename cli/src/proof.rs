@@ -36,7 +36,7 @@ pub(crate) struct Compiled {
 
 #[derive(Debug)]
 enum News {
-    Written(Module),
+    Written(Box<Module>),
     Ended(Box<Result<(Report, Module), Failure>>),
 }
 
@@ -94,7 +94,7 @@ impl Proof {
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
             match self.news.recv_timeout(left) {
-                Ok(News::Written(module)) => written = Some(module),
+                Ok(News::Written(module)) => written = Some(*module),
                 Ok(News::Ended(end)) => {
                     let (report, module) = (*end)?;
                     judge(&report)?;
@@ -136,7 +136,7 @@ fn prove(
         Ok(module) => module,
         Err(error) => return tell.send(News::Ended(Box::new(Err(Failure::Usage(error.to_string()))))).ok(),
     };
-    tell.send(News::Written(module.clone())).ok()?;
+    tell.send(News::Written(Box::new(module.clone()))).ok()?;
     let (code, report) = with_proof(page, &module.code, &module.constants, Depth::Quick);
     // A run that fails gives nothing.
     let Compiled { kernels, tables } = given.recv().ok()?;
@@ -162,17 +162,17 @@ mod tests {
     use clap::Parser;
 
     fn pendulum() -> (Scene, Functions) {
-        let cli = Cli::try_parse_from(["gyro", "simulate", "../examples/pendulum.toml"]).unwrap();
+        let cli = Cli::try_parse_from(["gyro", "simulate", "../examples/pendulum.toml"]).expect("a command");
         let Command::Simulate(args) = cli.command else { panic!("simulate") };
-        (Scene::new(&args).unwrap(), Functions::of_solvers())
+        (Scene::new(&args).expect("a scene"), Functions::of_solvers())
     }
 
     /// What Cranelift is given.
     fn given((scene, functions): &(Scene, Functions)) -> Compiled {
-        let scheduled = gyro_codegen::schedule(&scene.page, functions, scene.effort).unwrap();
+        let scheduled = gyro_codegen::schedule(&scene.page, functions, scene.effort).expect("kernels");
         let mut given = Compiled::default();
         let mut told = |input: Input<'_>| given.hear(input);
-        gyro_jit::compile_scheduled::<f64>(&scene.page, scheduled, Some(&mut told)).unwrap();
+        gyro_jit::compile_scheduled::<f64>(&scene.page, scheduled, Some(&mut told)).expect("machine code");
         given
     }
 
