@@ -12,7 +12,7 @@ use crate::write::{self, Known};
 use crate::{
     columns, events, in_process, interrupt, json, linearization, nested, plot, remarks, summary, words,
 };
-use gyro_assembled::{Form, QuickLookError, quick_look};
+use gyro_assembled::{QuickLookError, quick_look};
 use gyro_codegen::Module;
 use gyro_runner::{Event, Sample, Start, Summary};
 use std::path::{Path, PathBuf};
@@ -35,10 +35,15 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let (standing, module) = settled(proof)?;
     // A linearisation asks for functions of its own, a run for those that a program needs.
     let module = module.filter(|_| args.linearize.is_none());
-    if let (Some(folder), Some(module)) = (folder, module) {
-        let path = module_path(&scene.results, folder);
-        write::write(&path, &module.code, Known::Record)?;
-        written.push(path);
+    match (folder, module) {
+        (Some(folder), Some(module)) => {
+            let path = module_path(&scene.results, folder);
+            write::write(&path, &module.code, Known::Record)?;
+            written.push(path);
+        }
+        // The functions of an earlier run are not those that ran.
+        (Some(folder), None) => write::remove(&module_path(&scene.results, folder)),
+        (None, _) => {}
     }
     // Whatever becomes of the verdict, the run is told.
     let (verdict, unjudged) = match args.verify.then(|| judged(&scene, &outcome)) {
@@ -104,9 +109,7 @@ pub(crate) fn run(scene: &mut Scene, outcome: &mut Outcome) -> Result<Option<Pro
     follow(scene, outcome, |scene, tell| match scene.engine {
         Engine::InProcess => in_process::simulate(scene, tell, &mut proof),
         Engine::Generated => nested::simulate(scene, tell),
-        Engine::Assembled => assembled(scene, Form::for_model(&scene.model), tell),
-        Engine::Dense => assembled(scene, Form::Dense, tell),
-        Engine::Recursive => assembled(scene, Form::Recursive, tell),
+        Engine::Assembled => assembled(scene, tell),
     })?;
     Ok(proof)
 }
@@ -174,7 +177,7 @@ fn with_link(scene: &Scene, outcome: &Outcome, failure: Failure) -> Failure {
 }
 
 /// Runs the runtime-assembled model in this process.
-fn assembled(scene: &Scene, form: Form, tell: &mut dyn FnMut(Event<'_>)) -> Result<Summary, Failure> {
+fn assembled(scene: &Scene, tell: &mut dyn FnMut(Event<'_>)) -> Result<Summary, Failure> {
     let precision = match scene.precision {
         Precision::F32 => gyro_assembled::Precision::Single,
         Precision::F64 => gyro_assembled::Precision::Double,
@@ -182,7 +185,7 @@ fn assembled(scene: &Scene, form: Form, tell: &mut dyn FnMut(Event<'_>)) -> Resu
     let plan = (&scene.settings, &scene.approach);
     let _interruptible = interrupt::Run::begin();
     let mut told = interrupt::interruptible(tell);
-    quick_look(&scene.model, (form, precision), plan, &scene.start, &mut told).map_err(|error| match error {
+    quick_look(&scene.model, precision, plan, &scene.start, &mut told).map_err(|error| match error {
         QuickLookError::Run(_) if interrupt::was_interrupted() => interrupt::failure(),
         QuickLookError::Start(error) => Failure::Usage(error.to_string()),
         QuickLookError::Run(refused @ gyro_runner::Failure::Refused(_)) => {

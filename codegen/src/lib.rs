@@ -291,14 +291,14 @@ fn facts(system: &System) -> Facts {
     let model = system.model;
     let is_driven = model.is_driven();
     let tells_motion = |output: &Output| match output.kind {
-        OutputKind::Acceleration { .. }
-        | OutputKind::Inertial { .. }
+        OutputKind::Acceleration(_)
+        | OutputKind::Inertial(_)
         | OutputKind::Reaction { .. }
         | OutputKind::Driver { .. }
         | OutputKind::Coupler { .. } => true,
         OutputKind::Power => is_driven,
-        OutputKind::Pose { .. }
-        | OutputKind::Velocity { .. }
+        OutputKind::Pose(_)
+        | OutputKind::Velocity(_)
         | OutputKind::Spring { .. }
         | OutputKind::Link { .. }
         | OutputKind::Energy => false,

@@ -140,7 +140,7 @@ fn names(model: &Model) -> Names {
     let outputs = model.outputs.iter().flat_map(|output| {
         output.kind.columns().iter().map(|&(suffix, unit)| (output.name.clone(), suffix, unit))
     });
-    let frames = model.outputs.iter().filter(|output| matches!(output.kind, OutputKind::Velocity { .. }));
+    let frames = model.outputs.iter().filter(|output| matches!(output.kind, OutputKind::Velocity(_)));
     Names {
         size: model.size(),
         bodies: moving.iter().map(name).collect(),

@@ -115,8 +115,8 @@ impl Native for f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chacha20::ChaCha8Rng;
     use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
 
     #[test]
     fn sine_and_cosine_of_one_call_have_the_bits_of_two() {

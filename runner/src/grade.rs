@@ -79,7 +79,7 @@ const TOLERANCES: f64 = 10.0;
 /// An angle's error is held against no more than this, rad.
 const RADIAN: f64 = 1.0;
 /// A motion smaller than this is rest, and what is held against it rounding, rad or parts of the size, and per second.
-const STILL: f64 = 1e-10;
+pub(crate) const STILL: f64 = 1e-10;
 /// A motion smaller than this part of the largest one is held against that for a grade of good.
 const SMALL: f64 = 1e-6;
 /// The same for a grade of worthless, at least and, under a coarse tolerance, at most.

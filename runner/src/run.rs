@@ -14,6 +14,7 @@ use crate::advice::Plan;
 use crate::control::{Controller, Controllers};
 use crate::failure::behind;
 use crate::forecast::{self, Forecast};
+use crate::grade::STILL;
 use crate::input::{any_varies, set};
 use crate::motion::{self, Course, Linear, Motion, MotionBuilder, OperatingPoint};
 use crate::offers::Offers;
@@ -356,7 +357,7 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
         if let Some(linear) = approach.examine.then(|| self.linearised(builder, settings.t_end)).flatten() {
             (told.tell)(Event::Linear(&linear))?;
         }
-        tracker.finish(&mut self.summary);
+        tracker.finish(&mut self.summary, approach.tolerance.unwrap_or(0.0).max(STILL));
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! How good a run was.
 
 use crate::Sample;
+use crate::companion::rate;
 use gyro_sim::Statistics;
 use nanoserde::{DeBin, SerBin};
 
@@ -17,7 +18,8 @@ pub struct Summary {
     pub velocity_violation: f64,
     /// Worst `|pᵀp − 1|` of all samples.
     pub norm_violation: f64,
-    /// Worst `|E − E₀ − work|` of all samples over the largest kinetic energy or change of potential energy of any.
+    /// Worst `|E − E₀ − work|` of all samples over the largest kinetic energy or change of potential energy of any, or
+    /// over what they would be if the fastest coordinate were as fast as the tolerance.
     pub energy_drift: f64,
     /// Seconds spent stepping and correcting, without samples and their output.
     pub run_time_s: f64,
@@ -37,6 +39,8 @@ pub struct Tracker {
     norm_violation: f64,
     energy_error: f64,
     energy_scale: f64,
+    /// The largest rate of any coordinate, rad/s or m/s.
+    fastest: f64,
     rounding: f64,
 }
 
@@ -54,11 +58,15 @@ impl Tracker {
         self.norm_violation = self.norm_violation.max(sample.norm_violation);
         self.energy_error = self.energy_error.max(error);
         self.energy_scale = self.energy_scale.max(scale);
+        let rates = sample.coordinates.iter().map(|joint| norm(&rate(joint)));
+        let speeds = sample.bodies.iter().map(|body| norm(&body.velocity));
+        self.fastest = rates.chain(speeds).fold(self.fastest, f64::max);
         self.rounding = self.rounding.max(rounding);
     }
 
-    /// Writes what was seen into a summary.
-    pub fn finish(&self, summary: &mut Summary) {
+    /// Writes what was seen into a summary. What is slower than `rest`, rad/s or m/s, may rest as well: the energy that
+    /// is held against its error is then that of a motion as fast as this.
+    pub fn finish(&self, summary: &mut Summary, rest: f64) {
         summary.position_violation = self.position_violation;
         summary.velocity_violation = self.velocity_violation;
         summary.norm_violation = self.norm_violation;
@@ -67,9 +75,15 @@ impl Tracker {
         summary.energy_drift = if self.energy_error <= floor && self.energy_scale <= floor {
             0.0
         } else {
-            self.energy_error / self.energy_scale.max(floor)
+            // Energy goes with the square of the rates.
+            let slower = if self.fastest > 0.0 { (rest / self.fastest).max(1.0).powi(2) } else { 1.0 };
+            self.energy_error / (self.energy_scale * slower).max(floor)
         };
     }
+}
+
+fn norm(vector: &[f64]) -> f64 {
+    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// `E − E₀ − work` since the first sample, J. Kinetic and potential parts are subtracted apart, so that a large
@@ -81,6 +95,7 @@ pub fn energy_error(first: &Sample, sample: &Sample) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::JointSample;
 
     fn sample(kinetic: f64, potential: f64, work: f64) -> Sample {
         Sample {
@@ -102,8 +117,22 @@ mod tests {
     fn track(samples: &[Sample]) -> Summary {
         let (mut tracker, mut summary) = (Tracker::default(), Summary::default());
         samples.iter().for_each(|s| tracker.add(s, 1e-16));
-        tracker.finish(&mut summary);
+        tracker.finish(&mut summary, 1e-9);
         summary
+    }
+
+    #[test]
+    fn what_hardly_moves_may_rest_as_well() {
+        let moved = |kinetic: f64, rate: f64| {
+            let mut moved = sample(kinetic, 5.0, 0.0);
+            moved.coordinates = vec![JointSample::Angle { position: 0.0, rate }];
+            let (mut tracker, mut summary) = (Tracker::default(), Summary::default());
+            [sample(0.0, 5.0, 0.0), moved].iter().for_each(|s| tracker.add(s, 0.0));
+            tracker.finish(&mut summary, 1e-9);
+            summary.energy_drift
+        };
+        assert!((moved(5e-23, 1e-11) - 1e-4).abs() < 1e-12);
+        assert_eq!(moved(5e-17, 1e-8), 1.0);
     }
 
     #[test]

@@ -192,7 +192,7 @@ pub fn source_of_accelerations(function: &str) -> &'static str {
 
 /// The outputs that are frames.
 pub(crate) fn frames(model: &Model) -> impl Iterator<Item = &Output> {
-    model.outputs.iter().filter(|output| matches!(output.kind, OutputKind::Velocity { .. }))
+    model.outputs.iter().filter(|output| matches!(output.kind, OutputKind::Velocity(_)))
 }
 
 /// Whether a function is told accelerations that need not be those of the equations of motion.

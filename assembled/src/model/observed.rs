@@ -3,11 +3,11 @@
 use crate::model::law::Amount;
 use crate::model::lowered::Lowered;
 use crate::model::motion::{Motion, along_pi};
-use crate::model::outputs::{Quantity, Solution};
+use crate::model::outputs::{Quantity, Solution, Spot};
 use crate::model::place::{Moment, Place};
 use crate::model::rows::Row;
 use crate::number::Number;
-use nalgebra::Vector3;
+use nalgebra::{Quaternion, Vector3};
 
 impl<T: Number> Lowered<T> {
     /// Number of numbers of all outputs.
@@ -29,20 +29,23 @@ impl<T: Number> Lowered<T> {
         match quantity {
             Quantity::Pose(spot) => {
                 let motion = self.scene.motion(at, &spot.place);
-                write(out, &motion.tip(&spot.point), motion.p.as_slice());
+                let [e0, e1, e2, e3] = motion.p.into();
+                let p = Quaternion::new(e0, e1, e2, e3) * spot.turn.quaternion();
+                write(out, &motion.tip(&spot.point), &[p.w, p.i, p.j, p.k]);
             }
             Quantity::Velocity(spot) => {
                 let motion = self.scene.motion(at, &spot.place);
-                write(out, &motion.tip_velocity(&spot.point), motion.w.as_slice());
+                write(out, &motion.tip_velocity(&spot.point), by_axes(spot, motion.w).as_slice());
             }
             Quantity::Acceleration(spot) => {
                 let motion = self.accelerated(at, &spot.place, solution.accelerations);
-                write(out, &motion.point(&spot.point).second, motion.w_dot.as_slice());
+                write(out, &motion.point(&spot.point).second, by_axes(spot, motion.w_dot).as_slice());
             }
             Quantity::Inertial(spot) => {
                 let motion = self.accelerated(at, &spot.place, solution.accelerations);
                 let specific_force = motion.point(&spot.point).second - self.scene.gravity;
-                write(out, &motion.a.tr_mul(&specific_force), motion.w.as_slice());
+                let [felt, w] = [motion.a.tr_mul(&specific_force), motion.w].map(|v| by_axes(spot, v));
+                write(out, &felt, w.as_slice());
             }
             Quantity::Reaction(joint, rows) => {
                 let [force, torque] = self.reaction(at, *joint, rows, solution.lambda);
@@ -102,6 +105,11 @@ impl<T: Number> Lowered<T> {
         let (f, g, h) = (i.a * joint.first.f, i.a * joint.first.g, i.a * joint.first.h);
         [force, torque].map(|v| Vector3::new(f.dot(&v), g.dot(&v), h.dot(&v)))
     }
+}
+
+/// A vector in a body's frame, by the axes of a frame in it.
+fn by_axes<T: Number>(spot: &Spot<T>, vector: Vector3<T>) -> Vector3<T> {
+    spot.turn.inverse_transform_vector(&vector)
 }
 
 fn write<T: Number>(out: &mut [T], vector: &Vector3<T>, rest: &[T]) {

@@ -6,8 +6,8 @@ use crate::model::measure::Coordinate;
 use crate::model::path::Path;
 use crate::model::place::{Place, Places, vector};
 use crate::number::Number;
-use gyro_model::{ForceKind, Model, OutputKind, RowOwner};
-use nalgebra::Vector3;
+use gyro_model::{BodyFrame, ForceKind, Model, OutputKind, RowOwner};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// An output; its name is in the description.
 #[derive(Clone, Debug)]
@@ -33,11 +33,14 @@ pub(crate) enum Quantity<T> {
     Power,
 }
 
-/// A point of a body, in the body's frame.
+/// A frame of a body.
 #[derive(Clone, Debug)]
 pub(crate) struct Spot<T> {
     pub(crate) place: Place<T>,
+    /// Its origin, in the body's frame.
     pub(crate) point: Vector3<T>,
+    /// How it is turned in the body's frame.
+    pub(crate) turn: UnitQuaternion<T>,
 }
 
 /// `−stiffness (x − free) − damping ẋ` along a path.
@@ -93,16 +96,24 @@ impl<T: Number> Output<T> {
         (places, joints): (&Places<T>, &[Joint<T>]),
         output: &gyro_model::Output,
     ) -> Self {
-        let spot = |body: &usize, point| Spot { place: places.of(*body), point: vector(model.values(point)) };
+        let spot = |frame: &BodyFrame| {
+            let [e0, e1, e2, e3] =
+                frame.orientation.as_ref().map_or([1.0, 0.0, 0.0, 0.0], |p| model.values(p));
+            Spot {
+                place: places.of(frame.body),
+                point: vector(model.values(&frame.point)),
+                turn: UnitQuaternion::from_quaternion(Quaternion::new(e0, e1, e2, e3)).cast(),
+            }
+        };
         let rows_of = |owner| -> Vec<usize> {
             let rows = model.rows().into_iter().enumerate();
             rows.filter(|(_, row)| row.owner == owner).map(|(index, _)| index).collect()
         };
         let quantity = match &output.kind {
-            OutputKind::Pose { body, point } => Quantity::Pose(spot(body, point)),
-            OutputKind::Velocity { body, point } => Quantity::Velocity(spot(body, point)),
-            OutputKind::Acceleration { body, point } => Quantity::Acceleration(spot(body, point)),
-            OutputKind::Inertial { body, point } => Quantity::Inertial(spot(body, point)),
+            OutputKind::Pose(frame) => Quantity::Pose(spot(frame)),
+            OutputKind::Velocity(frame) => Quantity::Velocity(spot(frame)),
+            OutputKind::Acceleration(frame) => Quantity::Acceleration(spot(frame)),
+            OutputKind::Inertial(frame) => Quantity::Inertial(spot(frame)),
             OutputKind::Reaction { joint } => Quantity::Reaction(*joint, rows_of(RowOwner::Joint(*joint))),
             OutputKind::Driver { driver } => {
                 Quantity::Load(rows_of(RowOwner::Driver(*driver)).first().copied())

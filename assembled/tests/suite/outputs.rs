@@ -2,7 +2,7 @@
 
 use crate::support::{Random, assert_close, careful_models, dense, read_text, state_near, test_model};
 use gyro_assembled::Dense;
-use gyro_model::{JointKind, Model, Number, OutputKind, Support};
+use gyro_model::{BodyFrame, JointKind, Model, Number, OutputKind, Support};
 use gyro_sim::{Dynamics, Exact, Mechanism, Rk4};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
@@ -148,14 +148,17 @@ fn velocities_and_accelerations_are_what_poses_and_velocities_change_by() {
             let mut model = test_model(name);
             let body = model.bodies.iter().position(|other| other.name == body).expect("it is there");
             let point = [1, 2, -1].map(Number::integer);
-            let kinds = [
-                OutputKind::Pose { body, point: point.clone() },
-                OutputKind::Velocity { body, point: point.clone() },
-                OutputKind::Acceleration { body, point: point.clone() },
-                OutputKind::Inertial { body, point },
-            ];
-            model.outputs = kinds.map(|kind| gyro_model::Output { name: String::new(), kind }).to_vec();
-            check_kinematics(&model.name, &model, &dense(&model));
+            for orientation in [None, Some([3, -1, 2, 1].map(Number::integer))] {
+                let frame = BodyFrame { body, point: point.clone(), orientation };
+                let kinds =
+                    [OutputKind::Pose, OutputKind::Velocity, OutputKind::Acceleration, OutputKind::Inertial];
+                let output = |kind: fn(BodyFrame) -> OutputKind| gyro_model::Output {
+                    name: String::new(),
+                    kind: kind(frame.clone()),
+                };
+                model.outputs = kinds.map(output).to_vec();
+                check_kinematics(&model.name, &model, &dense(&model));
+            }
         }
     }
 }

@@ -73,20 +73,12 @@ struct Group {
     inertial: Option<Inertial>,
 }
 
-impl Group {
-    /// Has the frame of the first of its links whose frame is wanted.
-    fn turn(&mut self, robot: &Robot, wanted: &[String]) {
-        let is_wanted = |link: usize| wanted.contains(&robot.links[link].name);
-        let Some(&(_, pose)) = self.links.iter().find(|(link, _)| is_wanted(*link)) else { return };
-        let back = settled(&pose.inverse());
-        self.zero = settled(&(self.zero * pose));
-        self.links.iter_mut().for_each(|(_, place)| *place = settled(&(back * *place)));
-        self.inertial = self.inertial.as_ref().map(|inertial| inertial.seen(&back));
-    }
-}
-
 /// A link that moves without mass takes this part of the mass and the inertia of what it carries.
 const BORROWED: f64 = 1e-6;
+
+/// The same where all numbers are to be those of the file: within rounding, in joint coordinates, of a link without
+/// mass.
+const BORROWED_AS_WRITTEN: f64 = 1e-12;
 
 /// Merges the links of a robot.
 ///
@@ -95,7 +87,7 @@ const BORROWED: f64 = 1e-6;
 pub(super) fn merge(
     file: &str,
     robot: &Robot,
-    Wishes { root, as_written, frames, .. }: Wishes<'_>,
+    Wishes { root, as_written, .. }: Wishes<'_>,
 ) -> Result<Merged, Vec<String>> {
     let mut groups = grouped(robot, &order(file, robot)?, root);
     let mut problems = Vec::new();
@@ -106,8 +98,8 @@ pub(super) fn merge(
             .push(format!("{file}: all links are fixed to the root link `{name}`: --floating lets it move"));
     }
     let ground = usize::from(root == Root::Fixed);
-    groups[ground..].iter_mut().for_each(|group| group.turn(robot, frames));
-    lend(file, robot, &mut groups[ground..], &mut remarks, &mut problems);
+    let part = if as_written { BORROWED_AS_WRITTEN } else { BORROWED };
+    lend((file, part), robot, &mut groups[ground..], &mut remarks, &mut problems);
     let mut merged = Merged { bodies: Vec::new(), places: Vec::new(), remarks };
     let mut places = vec![None; robot.links.len()];
     // The root's first, then in the order of the file.
@@ -239,7 +231,7 @@ fn remark_on_links(robot: &Robot, group: &Group) -> Option<String> {
 
 /// Gives links that move without mass a small part of what they carry.
 fn lend(
-    file: &str,
+    (file, part): (&str, f64),
     robot: &Robot,
     groups: &mut [Group],
     remarks: &mut Vec<String>,
@@ -268,9 +260,10 @@ fn lend(
             problems.push(at(file, link, &words));
             continue;
         };
+        let (share, lending) = (share(part), &robot.links[groups[lender].named].name);
         remarks.push(format!(
-            "link `{}` moves and has no mass: it takes a millionth of that of `{}`, which it carries",
-            link.name, robot.links[groups[lender].named].name
+            "link `{}` moves and has no mass: it takes {share} of that of `{lending}`, which it carries",
+            link.name
         ));
         loans.push((index, lender));
     }
@@ -278,13 +271,17 @@ fn lend(
     for (borrower, lender) in loans {
         let Some(inertial) = &whole[lender] else { continue };
         let pose = groups[borrower].zero.inverse() * groups[lender].zero;
-        groups[borrower].inertial = Some(inertial.part(BORROWED).seen(&pose));
+        groups[borrower].inertial = Some(inertial.part(part).seen(&pose));
         let left = groups[lender].inertial.as_mut();
         if let Some(left) = left {
-            left.mass -= inertial.mass * BORROWED;
-            left.tensor -= inertial.tensor * BORROWED;
+            left.mass -= inertial.mass * part;
+            left.tensor -= inertial.tensor * part;
         }
     }
+}
+
+fn share(part: f64) -> &'static str {
+    if part == BORROWED { "a millionth" } else { "1e-12" }
 }
 
 /// The nearest group with mass that a group carries.

@@ -52,7 +52,7 @@ pub(super) fn write(
         joint.mimic.as_ref().map_or_else(String::new, |_| joint_names.name(&format!("{name}_mimic")))
     };
     let mimics = robot.joints.iter().zip(&joints).map(&mut coupled).collect();
-    let framed = frames::of(robot, merged, wishes.frames, &mut joint_names, remarks);
+    let framed = frames::of(robot, merged, wishes.frames, &mut joint_names);
     let changed = body_names.changed.iter().chain(&joint_names.changed);
     let changed: Vec<String> = changed.map(|(was, is)| format!("`{was}` is `{is}`")).collect();
     if !changed.is_empty() {
@@ -67,7 +67,7 @@ pub(super) fn write(
         page.moving_joints().for_each(|joint| write(&page, &mut text, joint));
     }
     for frame in framed {
-        frame.outputs(&mut text, &page.bodies[frame.body], &vector(&frame.point));
+        frame.outputs(&mut text, &page.bodies[frame.place.body]);
     }
     for wrench in &page.wrenches {
         wrench.load(&mut text, &page.bodies[wrench.body], &vector(&wrench.point));
@@ -396,11 +396,11 @@ impl Page<'_> {
     }
 }
 
-fn vector(v: &Vector3<f64>) -> String {
+pub(super) fn vector(v: &Vector3<f64>) -> String {
     list(v.as_slice())
 }
 
-fn euler_parameters(pose: &IsometryMatrix3<f64>) -> String {
+pub(super) fn euler_parameters(pose: &IsometryMatrix3<f64>) -> String {
     let p = UnitQuaternion::from_rotation_matrix(&pose.rotation);
     list(&[p.w, p.i, p.j, p.k])
 }

@@ -199,7 +199,12 @@ fn a_moving_link_without_mass_is_refused_and_all_mistakes_come_at_once() {
 fn a_link_without_mass_between_moving_joints_takes_a_little_of_what_it_carries() {
     let rest = r#"<link name="cross"/><joint name="j" type="revolute"><parent link="base"/><child link="cross"/><axis xyz="0 0 1"/></joint>
 <joint name="k" type="revolute"><origin xyz="0.5 0 0"/><parent link="cross"/><child link="arm"/></joint>"#;
-    let (page, remarks) = convert("r.urdf", "r.urdf", &robot(rest), PLAIN).unwrap();
+    let convert = |wishes| convert("r.urdf", "r.urdf", &robot(rest), wishes).unwrap();
+    let (page, remarks) = convert(Wishes { as_written: true, ..PLAIN });
+    assert!(page.contains("mass = 1e-12\n"), "{page}");
+    let words = "no mass: it takes 1e-12 of that of `arm`";
+    assert!(remarks.iter().any(|remark| remark.contains(words)), "{remarks:#?}");
+    let (page, remarks) = convert(PLAIN);
     let words = "link `cross` moves and has no mass: it takes a millionth of that of `arm`, which it carries";
     assert!(remarks.iter().any(|remark| remark == words), "{remarks:#?}");
     assert!(page.contains("mass = 1e-6\ninertia = [1e-6, 1e-6, 1e-6]"), "{page}");

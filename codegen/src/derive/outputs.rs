@@ -9,8 +9,8 @@ use crate::expr::differentiate::Derivative;
 use crate::expr::differentiate::Direction;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
-use crate::expr::vector::{Vec3, ZERO3};
-use gyro_model::{Number, OutputKind, RowOwner};
+use crate::expr::vector::{Vec3, Vec4, ZERO3};
+use gyro_model::{BodyFrame, OutputKind, RowOwner};
 use std::array::from_fn;
 
 /// What outputs are made of besides the state.
@@ -37,32 +37,52 @@ pub fn drivers_power(system: &mut System, sources: &Sources) -> ExprId {
     power
 }
 
-/// Velocity of a point, global frame, and w'.
-pub fn velocity(system: &mut System, body: usize, point: &[Number; 3]) -> Vec<ExprId> {
-    let velocity = PointOfBody::new(system, body, point).velocity;
-    velocity.into_iter().chain(system.poses[body].w).collect()
+/// Velocity of a frame's origin, global, and the frame's w'.
+pub fn velocity(system: &mut System, frame: &BodyFrame) -> Vec<ExprId> {
+    let velocity = PointOfBody::new(system, frame.body, &frame.point).velocity;
+    let w = by_axes(system, frame, system.poses[frame.body].w);
+    velocity.into_iter().chain(w).collect()
 }
 
-/// Acceleration of a point, global frame, and ẇ'.
-pub fn acceleration(system: &mut System, body: usize, point: &[Number; 3]) -> Vec<ExprId> {
-    let (linear, angular) = linear_and_angular(system, body, point);
+/// Acceleration of a frame's origin, global, and the frame's ẇ'.
+pub fn acceleration(system: &mut System, frame: &BodyFrame) -> Vec<ExprId> {
+    let (linear, angular) = linear_and_angular(system, frame);
+    let angular = by_axes(system, frame, angular);
     linear.into_iter().chain(angular).collect()
+}
+
+/// Euler parameters of a frame in its body's; `None` where it has the body's axes.
+fn orientation(system: &mut System, frame: &BodyFrame) -> Option<Vec4> {
+    let parameters = system.numbers(frame.orientation.as_ref()?);
+    Some(system.graph.normalise(&parameters))
+}
+
+/// A vector in a body's frame, by the axes of a frame that is fixed there.
+fn by_axes(system: &mut System, frame: &BodyFrame, vector: Vec3) -> Vec3 {
+    let Some(p) = orientation(system, frame) else { return vector };
+    let axes = system.graph.rotation(&p);
+    system.graph.transposed_vec(&axes, &vector)
 }
 
 fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<ExprId> {
     match kind {
-        OutputKind::Pose { body, point } => {
-            let position = PointOfBody::new(system, *body, point).position;
-            position.into_iter().chain(system.poses[*body].p).collect()
+        OutputKind::Pose(frame) => {
+            let position = PointOfBody::new(system, frame.body, &frame.point).position;
+            let p = system.poses[frame.body].p;
+            let p = match orientation(system, frame) {
+                Some(own) => system.graph.compose(&p, &own),
+                None => p,
+            };
+            position.into_iter().chain(p).collect()
         }
-        OutputKind::Velocity { body, point } => velocity(system, *body, point),
-        OutputKind::Acceleration { body, point } => acceleration(system, *body, point),
-        OutputKind::Inertial { body, point } => {
-            let (linear, _) = linear_and_angular(system, *body, point);
-            let (gravity, pose) = (system.numbers(&system.model.gravity), system.poses[*body]);
+        OutputKind::Velocity(frame) => velocity(system, frame),
+        OutputKind::Acceleration(frame) => acceleration(system, frame),
+        OutputKind::Inertial(frame) => {
+            let (linear, _) = linear_and_angular(system, frame);
+            let (gravity, pose) = (system.numbers(&system.model.gravity), system.poses[frame.body]);
             let felt = system.graph.sub_vec(&linear, &gravity);
             let felt = system.graph.transposed_vec(&pose.a, &felt);
-            felt.into_iter().chain(pose.w).collect()
+            [felt, pose.w].into_iter().flat_map(|vector| by_axes(system, frame, vector)).collect()
         }
         OutputKind::Reaction { joint } => reaction(system, sources, *joint),
         OutputKind::Driver { driver } => system
@@ -82,8 +102,9 @@ fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<Exp
 }
 
 /// Acceleration of a point, global frame, `r̈ = s̈ + A (ẇ' × c + w' × (w' × c))`, and ẇ'.
-fn linear_and_angular(system: &mut System, body: usize, point: &[Number; 3]) -> (Vec3, Vec3) {
-    let (pose, point) = (system.poses[body], system.numbers(point));
+fn linear_and_angular(system: &mut System, frame: &BodyFrame) -> (Vec3, Vec3) {
+    let (body, point) = (frame.body, system.numbers(&frame.point));
+    let pose = system.poses[body];
     let (linear, angular) = match system.moving_body_of(body) {
         Some(moving_body) => {
             let mut component = |k| system.graph.symbol(Symbol::Acceleration { moving_body, k });

@@ -15,7 +15,7 @@ use crate::expr::differentiate::gradient;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::simplify::cheapest::{Chosen, FinalPasses};
-use gyro_model::{Number, OutputKind};
+use gyro_model::{BodyFrame, OutputKind};
 use motions::Part;
 
 /// The frames of a model file.
@@ -87,11 +87,11 @@ impl Frames {
     /// `None` if the model file names no frame.
     pub fn derive(system: &mut System, coordinates: &Coordinates) -> Option<Self> {
         let model = system.model;
-        let frames: Vec<(&str, usize, &[Number; 3])> = model
+        let frames: Vec<(&str, &BodyFrame)> = model
             .outputs
             .iter()
             .filter_map(|output| match &output.kind {
-                OutputKind::Velocity { body, point } => Some((output.name.as_str(), *body, point)),
+                OutputKind::Velocity(frame) => Some((output.name.as_str(), frame)),
                 _ => None,
             })
             .collect();
@@ -99,10 +99,10 @@ impl Frames {
             return None;
         }
         let velocities: Vec<_> =
-            frames.iter().flat_map(|(_, body, point)| outputs::velocity(system, *body, point)).collect();
+            frames.iter().flat_map(|(_, frame)| outputs::velocity(system, frame)).collect();
         let jacobians = jacobian(system, coordinates, &velocities);
         let accelerations: Vec<_> =
-            frames.iter().flat_map(|(_, body, point)| outputs::acceleration(system, *body, point)).collect();
+            frames.iter().flat_map(|(_, frame)| outputs::acceleration(system, frame)).collect();
         let at_rest = vec![Graph::ZERO; coordinates.layout.n_rates];
         let biases = at_accelerations(system, coordinates, &at_rest, &accelerations);
         Some(Self { names: frames.iter().map(|frame| frame.0.to_owned()).collect(), jacobians, biases })

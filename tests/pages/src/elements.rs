@@ -175,7 +175,11 @@ impl Page {
                 _ => {
                     let Some(body) = self.moving() else { continue };
                     let point = self.dice.point();
-                    format!("body = \"b{body}\"\npoint = {}\n", self.tunables(point))
+                    let place = format!("body = \"b{body}\"\npoint = {}\n", self.tunables(point));
+                    // Of numbers that are drawn beside the others, so that what was drawn before stays as it was.
+                    let p = [(); 4].map(|()| self.rotors.pick(&["-2", "-1", "0.5", "1", "3"]).to_owned());
+                    let orientation = format!("orientation = {}\n", list(&p));
+                    if self.rotors.once_in(2) { place + &orientation } else { place }
                 }
             };
             self.elements += &format!("\n[[output]]\nname = \"o{index}\"\nkind = \"{kind}\"\n{keys}");

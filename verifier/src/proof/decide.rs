@@ -18,9 +18,9 @@ use crate::interpreter::DivisionByZero;
 use crate::module::Module;
 use crate::program::{Id, Node};
 use crate::seed::Seed;
+use chacha20::ChaCha8Rng;
 use gyro_model::Model;
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::collections::HashSet;
 use std::f64::consts::LOG10_2;
 

@@ -8,7 +8,7 @@ use crate::module::frames;
 use crate::point::Point;
 use crate::program::Source;
 use crate::tape::Term;
-use gyro_model::{Number, OutputKind};
+use gyro_model::{BodyFrame, OutputKind};
 
 /// At the accelerations and multipliers that are proved there. What tells of multipliers is refuted without these.
 pub fn outputs<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
@@ -92,11 +92,10 @@ pub fn frame_biases<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     })?;
     let maximal = Point { state, ..case.point.clone() };
     let (textbook, accelerations) = (case.textbook(&maximal)?, velocities(case, &rates));
-    let acceleration = |body: usize, point: &[Number; 3]| {
-        textbook.output(&OutputKind::Acceleration { body, point: point.clone() }, accelerations, &[])
-    };
+    let acceleration =
+        |frame: &BodyFrame| textbook.output(&OutputKind::Acceleration(frame.clone()), accelerations, &[]);
     let expected = frames(case.model).map(|frame| match &frame.kind {
-        OutputKind::Velocity { body, point } => acceleration(*body, point),
+        OutputKind::Velocity(frame) => acceleration(frame),
         _ => None,
     });
     let expected = expected.collect::<Option<Vec<_>>>()?.concat();

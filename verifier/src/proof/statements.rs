@@ -11,12 +11,12 @@ use crate::program::{Function, Id, Node, Source};
 use crate::seed::Seed;
 use crate::tape::{Formulas, Tape, Term};
 use crate::textbook::Textbook;
+use chacha20::ChaCha8Rng;
 use gyro_model::{Model, Rational};
 use num_bigint::BigUint;
 use num_integer::Integer;
 use num_traits::ToPrimitive;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 
 /// Primes that are tried for roots of constants that have roots in them: enough for four of these, as a rule.

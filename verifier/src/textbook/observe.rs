@@ -6,7 +6,7 @@ use super::jet::Jet;
 use super::linear::Vector;
 use super::pose::Path;
 use crate::field::Field;
-use gyro_model::{JointCoordinate, JointKind, Number, OutputKind, RowOwner};
+use gyro_model::{BodyFrame, JointCoordinate, JointKind, OutputKind, RowOwner};
 
 /// The reading of one coordinate of a joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,23 +88,28 @@ impl<F: Field> Evaluation<'_, F> {
             linear.0.iter().chain(rest).map(|x| x.value.clone()).collect::<Vec<F>>()
         };
         Some(match kind {
-            OutputKind::Pose { body, point } => {
-                let pose = &self.moving[*body].pose;
-                values(pose.point(&self.scope.vector(point)), &pose.p)
+            OutputKind::Pose(frame) => {
+                let pose = &self.moving[frame.body].pose;
+                let p = match &frame.orientation {
+                    Some(own) => compose(&pose.p, &self.scope.unit(own)?),
+                    None => pose.p.clone(),
+                };
+                values(pose.point(&self.scope.vector(&frame.point)), &p)
             }
-            OutputKind::Velocity { body, point } => {
-                let moving = &self.moving[*body];
-                values(moving.velocity(&self.scope.vector(point)), &moving.w.0)
+            OutputKind::Velocity(frame) => {
+                let moving = &self.moving[frame.body];
+                let w = self.by_axes(frame, &moving.w)?;
+                values(moving.velocity(&self.scope.vector(&frame.point)), &w.0)
             }
-            OutputKind::Acceleration { body, point } => {
-                let [linear, angular] = self.acceleration_of_point(*body, point, accelerations);
-                values(linear, &angular.0)
+            OutputKind::Acceleration(frame) => {
+                let [linear, angular] = self.acceleration_of_point(frame, accelerations);
+                values(linear, &self.by_axes(frame, &angular)?.0)
             }
-            OutputKind::Inertial { body, point } => {
-                let [linear, _] = self.acceleration_of_point(*body, point, accelerations);
-                let moving = &self.moving[*body];
+            OutputKind::Inertial(frame) => {
+                let [linear, _] = self.acceleration_of_point(frame, accelerations);
+                let moving = &self.moving[frame.body];
                 let felt = moving.pose.a.transposed().apply(&(linear - self.gravity()));
-                values(felt, &moving.w.0)
+                values(self.by_axes(frame, &felt)?, &self.by_axes(frame, &moving.w)?.0)
             }
             OutputKind::Reaction { joint } => {
                 let [force, torque] = self.reaction(*joint, lambda)?;
@@ -118,10 +123,16 @@ impl<F: Field> Evaluation<'_, F> {
         })
     }
 
+    /// A vector in a body's frame, by the axes of a frame in it.
+    fn by_axes(&self, frame: &BodyFrame, vector: &Vector<F>) -> Option<Vector<F>> {
+        let Some(own) = &frame.orientation else { return Some(vector.clone()) };
+        Some(self.scope.rotation(&self.scope.unit(own)?).transposed().apply(vector))
+    }
+
     /// `s̈ + A (ẇ' × s' + w' × (w' × s'))` in the global frame, and ẇ'.
-    fn acceleration_of_point(&self, body: usize, point: &[Number; 3], given: &[F]) -> [Vector<F>; 2] {
-        let (moving, point) = (&self.moving[body], self.scope.vector(point));
-        let acceleration = self.acceleration(body, given);
+    fn acceleration_of_point(&self, frame: &BodyFrame, given: &[F]) -> [Vector<F>; 2] {
+        let (moving, point) = (&self.moving[frame.body], self.scope.vector(&frame.point));
+        let acceleration = self.acceleration(frame.body, given);
         let relative = acceleration.w.cross(&point) + moving.w.cross(&moving.w.cross(&point));
         [acceleration.s + moving.pose.a.apply(&relative), acceleration.w]
     }

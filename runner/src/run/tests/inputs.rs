@@ -6,10 +6,10 @@ use crate::approach::Integrator;
 use crate::motion::{Any, COLUMNS, Implicit, Only};
 use crate::spinner::Spinner;
 use crate::{Between, JointSample};
+use chacha20::ChaCha8Rng;
 use gyro_sim::Dual;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 const FRICTION: f64 = 1.5;
 const START: [f64; 2] = [0.0, -2.0];

@@ -6,8 +6,8 @@ use crate::spinner::Spinner;
 use crate::{
     Between, Difference, Grade, JointSample, Judgement, Measure, closely, companions, differences, judge,
 };
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 const T_END: f64 = 1.0;
 

@@ -3,9 +3,9 @@
 use crate::atoms::Elementary;
 use crate::point::Point;
 use crate::textbook::{Evaluation, Sparse, Textbook};
+use chacha20::ChaCha8Rng;
 use gyro_model::Model;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 
 const ALL_JOINTS: &str = "../tests/models/all-joints.toml";

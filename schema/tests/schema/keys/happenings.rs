@@ -1,6 +1,6 @@
 //! Events, and contacts: what happens at an instant.
 
-use crate::numbers::{Name, Number};
+use super::numbers::{Name, Number};
 use schemars::JsonSchema;
 
 /// A crossing of a level, which runs list.

@@ -1,6 +1,6 @@
 //! Joints and what acts on them.
 
-use crate::numbers::{Motion, Name, Number, Orientation, Plain, Vector};
+use super::numbers::{Motion, Name, Number, Orientation, Plain, Vector};
 use schemars::JsonSchema;
 
 /// A joint between two bodies.
@@ -245,6 +245,8 @@ pub(crate) struct Output {
     body: Option<String>,
     /// m, in the body's frame.
     point: Option<Vector>,
+    /// Euler parameters of the output's axes in the body's frame.
+    orientation: Option<Orientation>,
     joint: Option<String>,
     driver: Option<String>,
     coupler: Option<String>,

@@ -1,6 +1,6 @@
 //! Sampled controllers.
 
-use crate::numbers::{Name, Number, Plain};
+use super::numbers::{Name, Number, Plain};
 use schemars::JsonSchema;
 
 /// A law from outputs to inputs, at its own period.
