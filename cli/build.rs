@@ -1,13 +1,13 @@
 //! Packs what generated programs are compiled against into one archive, which the program carries: the sources of the
 //! runtime and of the runner, and of the few crates that these need. And asks git which commit this is.
 
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::fs::{self, File};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipWriter};
 
 /// The crates of this project that programs are compiled against, and the folders of their manifests.
 const OWN: [(&str, &str, &str); 4] = [
@@ -22,8 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let out = PathBuf::from(std::env::var("OUT_DIR")?);
     let mut files = own_files(&here)?;
     files.extend(vendored_files(&here, &out)?);
-    files.sort();
-    write_archive(&out.join("runtime.zip"), &files)?;
+    write_archive(&out.join("runtime.json.gz"), files)?;
     let commit = commit(&here).unwrap_or_default();
     println!("cargo::rustc-env=GYRO_COMMIT={commit}");
     println!("cargo::rerun-if-changed=build.rs");
@@ -159,16 +158,14 @@ fn sorted(folder: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     Ok(entries)
 }
 
-/// The same files give the same bytes.
-fn write_archive(path: &Path, files: &[Carried]) -> Result<(), Box<dyn Error>> {
-    let mut archive = ZipWriter::new(File::create(path)?);
-    let options = SimpleFileOptions::default()
-        .compression_method(CompressionMethod::Deflated)
-        .last_modified_time(DateTime::default());
-    for (name, content) in files {
-        archive.start_file(name.as_str(), options)?;
-        archive.write_all(content)?;
-    }
+/// An object of JSON with the text of each file. The same files give the same bytes.
+fn write_archive(path: &Path, files: Vec<Carried>) -> Result<(), Box<dyn Error>> {
+    let texts: BTreeMap<String, String> = files
+        .into_iter()
+        .map(|(name, content)| Ok((name, String::from_utf8(content)?)))
+        .collect::<Result<_, Box<dyn Error>>>()?;
+    let mut archive = GzEncoder::new(File::create(path)?, Compression::default());
+    serde_json::to_writer(&mut archive, &texts)?;
     archive.finish()?;
     Ok(())
 }

@@ -15,5 +15,5 @@ fn main() -> ExitCode {
     let mut model =
         gyro_model::read_with(file, &text, &mut load).unwrap_or_else(|e| panic!("{}", e.render()));
     model.counts_work = true;
-    child::main_by_names(&model, form, precision)
+    child::main(&model, form, precision)
 }

@@ -1,34 +1,24 @@
 //! The runtime-assembled model as a program that answers requests, optimised like the generated one beside which it is
 //! measured.
 
-use crate::{BuildError, Careful, Dense, Form, Precision, Recursive};
+use crate::{BuildError, Careful, Dense, Recursive};
 use gyro_model::Model;
 use gyro_runner::protocol::Request;
 use gyro_runner::{Failure, Summary, child, motion};
 use std::io::Write;
 use std::process::ExitCode;
 
-/// Answers requests about a model on standard input and output; see [`gyro_runner::child`].
-pub fn main(model: &Model, form: Form, precision: Precision) -> ExitCode {
+/// Answers requests about a model on standard input and output, in the form and the precision of these names:
+/// `recursive`, `careful` or `dense`; `f32` or `f64`. See [`gyro_runner::child`].
+pub fn main(model: &Model, form: &str, precision: &str) -> ExitCode {
     child::answer_all(|request, output| match (form, precision) {
-        (Form::Careful, Precision::Single) => answer(Careful::<f32>::new(model), request, output),
-        (Form::Careful, Precision::Double) => answer(Careful::<f64>::new(model), request, output),
-        (Form::Recursive, Precision::Single) => answer(Recursive::<f32>::new(model), request, output),
-        (Form::Recursive, Precision::Double) => answer(Recursive::<f64>::new(model), request, output),
-        (Form::Dense, Precision::Single) => answer(Dense::<f32>::new(model), request, output),
-        (Form::Dense, Precision::Double) => answer(Dense::<f64>::new(model), request, output),
+        ("careful", "f32") => answer(Careful::<f32>::new(model), request, output),
+        ("careful", _) => answer(Careful::<f64>::new(model), request, output),
+        ("recursive", "f32") => answer(Recursive::<f32>::new(model), request, output),
+        ("recursive", _) => answer(Recursive::<f64>::new(model), request, output),
+        (_, "f32") => answer(Dense::<f32>::new(model), request, output),
+        _ => answer(Dense::<f64>::new(model), request, output),
     })
-}
-
-/// The same with the names of form and precision: `recursive`, `careful` or `dense`; `f32` or `f64`.
-pub fn main_by_names(model: &Model, form: &str, precision: &str) -> ExitCode {
-    let form = match form {
-        "recursive" => Form::Recursive,
-        "careful" => Form::Careful,
-        _ => Form::Dense,
-    };
-    let precision = if precision == "f32" { Precision::Single } else { Precision::Double };
-    main(model, form, precision)
 }
 
 fn answer<M: motion::Maximal + Clone + 'static>(

@@ -8,7 +8,7 @@
 //!   dense Jacobian. It does every model.
 //! * [`Careful`], what a careful engineer would make of it: no allocation, the ground folded, eq. (17) eliminated body
 //!   by body from the leaves to the root in the null space of each joint, and a partition by charts from the root to
-//!   the leaves. It does the models that [`Careful::supports`]; [`Form::for_model`] picks this form or the first, as
+//!   the leaves. It does the models that [`Careful::supports`]; [`quick_look`] takes this form or the first, as
 //!   suits a model.
 //! * [`Recursive`], what an expert in rigid-body dynamics would make of it: articulated bodies in joint coordinates,
 //!   and a partition in closed form, both linear in the number of bodies. It takes the constraints for granted, and
@@ -50,6 +50,7 @@
 
 mod assembled;
 mod careful;
+#[cfg(feature = "child")]
 pub mod child;
 mod dense;
 mod description;
@@ -67,7 +68,7 @@ pub use dense::Saddle;
 pub use error::{BuildError, Unsupported};
 pub use model::lowered::Lowered;
 pub use number::Number;
-pub use quick_look::{Form, Precision, QuickLookError, quick_look};
+pub use quick_look::{Precision, QuickLookError, quick_look};
 pub use recursive::Recursion;
 
 /// The paper's plain form. See [`Saddle`].

@@ -78,6 +78,7 @@ pub enum Command {
     Cache(CacheArgs),
     Completions(CompletionsArgs),
     #[command(hide = true)]
+    #[cfg(feature = "answer")]
     Answer(AnswerArgs),
 }
 
@@ -109,6 +110,7 @@ pub struct CompletionsArgs {
 }
 
 /// Answer requests on standard input with the runtime-assembled model: what `report` asks
+#[cfg(feature = "answer")]
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   {program} answer models/gyroscope.toml careful f64")]
@@ -323,7 +325,7 @@ mod tests {
     #[test]
     fn every_option_is_read() {
         let args = simulate(&[
-            "--engine=dense",
+            "--engine=assembled",
             "--t-end",
             "2",
             "--step=1e-3",
@@ -349,7 +351,7 @@ mod tests {
             "--json",
         ])
         .unwrap();
-        assert_eq!((args.engine(), args.precision, args.json), (Engine::Dense, Precision::F32, true));
+        assert_eq!((args.engine(), args.precision, args.json), (Engine::Assembled, Precision::F32, true));
         assert_eq!((args.t_end, args.step), (Some(2.0), Some(1e-3)));
         assert_eq!((args.correct_every, args.every), (Some(5e-3), Some(0.5)));
         assert_eq!(args.method, Some(MethodName::Kept(Correction::None)));

@@ -3,7 +3,7 @@
 
 use crate::scene::{self, Scene};
 use crate::words::number;
-use gyro_assembled::{Dense, Form, Precision, quick_look};
+use gyro_assembled::{Dense, Precision, quick_look};
 use gyro_model::{Model, Number, Rational};
 use gyro_runner::{Approach, Event, Integrator, Sample, Settings, Start, any_varies, differences};
 use gyro_sim::{Dynamics, Mechanism};
@@ -90,9 +90,8 @@ fn disturbed(scene: &Scene, joint: usize) -> Option<f64> {
         }
         Ok(())
     };
-    let form = (Form::for_model(&model), Precision::Double);
     // What it does up to a failure is enough.
-    let _ = quick_look(&model, form, (&settings, &approach), &start, &mut tell);
+    let _ = quick_look(&model, Precision::Double, (&settings, &approach), &start, &mut tell);
     let still = vec![samples.first()?.clone(); samples.len()];
     let size = model.size().min(1.0);
     let reached = differences(&samples, &still).iter().map(|d| d.position).fold(0.0, f64::max);

@@ -4,13 +4,13 @@ use crate::args::GenerateArgs;
 use crate::failure::Failure;
 use crate::invocation::program;
 use crate::places::{Place, all_model_files, listing, module_path, place_of};
+use crate::side_by_side::side_by_side;
 use crate::verify::proved;
 use crate::words::count;
 use crate::write::{self, Known};
 use crate::{files, folder, progress, remarks, scene};
 use gyro_codegen::Module;
 use gyro_verifier::constants::Constants;
-use rayon::prelude::*;
 use similar::TextDiff;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -151,7 +151,7 @@ pub fn modules(
         }
         proved(&model, module)
     };
-    pages.par_iter().map(module).collect()
+    side_by_side(pages.len(), |k| module(&pages[k])).into_iter().collect()
 }
 
 /// How a generated module begins.

@@ -3,6 +3,7 @@
 use crate::args::InspectArgs;
 use crate::failure::Failure;
 use crate::progress::Spinner;
+use crate::side_by_side::side_by_side;
 use crate::variants::{Variant, variants};
 use crate::verify::verify_quickly;
 use crate::words::table;
@@ -12,7 +13,6 @@ use gyro_codegen::{
     generate_model, large,
 };
 use gyro_model::{Model, Row, RowOwner, Tree};
-use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -49,7 +49,8 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<(), Failure> {
     let saddle = Tree::of(&model).is_open() && !model.rows().iter().any(is_beside);
     let saddle =
         saddle.then(|| generate_by(Elimination::Saddle, &page, &model)).transpose().map_err(failure)?;
-    let elements = variants(&model).into_par_iter().map(|variant| Element::of(&page, variant)).collect();
+    let variants = variants(&model);
+    let elements = side_by_side(variants.len(), |k| Element::of(&page, &variants[k]));
     drop(spinner);
     let bytes = if args.no_compile { None } else { bytes(&module)? };
     let saddle = saddle.and_then(|module| total(&module.data_sheet, Kernel::Accelerations));
@@ -70,11 +71,14 @@ fn bytes(module: &Module) -> Result<Option<BTreeMap<Kernel, u64>>, Failure> {
 }
 
 impl Element {
-    fn of(page: &str, variant: Variant) -> Self {
-        let sheet = |model: Model| {
-            generate_model(page, &model).map(|module| module.data_sheet).map_err(|error| error.to_string())
+    fn of(page: &str, variant: &Variant) -> Self {
+        let sheet = |model: &Model| {
+            generate_model(page, model).map(|module| module.data_sheet).map_err(|error| error.to_string())
         };
-        Self { what: variant.what, data_sheet: variant.model.and_then(sheet) }
+        Self {
+            what: variant.what.clone(),
+            data_sheet: variant.model.as_ref().map_err(Clone::clone).and_then(sheet),
+        }
     }
 
     fn row(&self, whole: &DataSheet, kernels: &[Kernel]) -> Vec<String> {

@@ -1,6 +1,8 @@
 //! The command line of the project, as a library: `gyro` is a binary of it, and `cargo xtask` adds the commands of
 //! those who develop the project. What is public besides [`Cli`] and [`Command`] is for these.
 
+#[cfg(feature = "answer")]
+mod answer;
 mod args;
 #[cfg(feature = "jit")]
 mod batches;
@@ -50,6 +52,7 @@ mod runtime;
 mod scene;
 mod schema;
 mod show;
+mod side_by_side;
 mod simulate;
 mod spectrum;
 mod stability;
@@ -87,7 +90,8 @@ impl Command {
             Self::Report(args) => report::report(args),
             Self::Cache(args) => cache::cache(args),
             Self::Completions(args) => invocation::completions(args),
-            Self::Answer(args) => nested::answer(args),
+            #[cfg(feature = "answer")]
+            Self::Answer(args) => answer::answer(args),
         }
     }
 }

@@ -4,13 +4,13 @@
 //! carries; all of them share one build folder, so that only the first has to wait for `gyro-sim`. Whether anything has
 //! to be compiled is Cargo's to decide.
 
-use crate::args::{AnswerArgs, Precision};
+use crate::args::Precision;
 use crate::failure::Failure;
 use crate::progress::{self, Spinner};
 use crate::runs::{Runs, main};
 use crate::scene::Scene;
 use crate::verify::verify_quickly;
-use crate::{files, interrupt, machine_code, programs, remarks, runtime, scene};
+use crate::{files, interrupt, machine_code, programs, remarks, runtime};
 use gyro_codegen::{Functions, Kernel, Module};
 use gyro_model::Model;
 use gyro_runner::protocol::{self, Reply, Request};
@@ -133,6 +133,7 @@ pub(crate) fn assembled() -> Result<PathBuf, Failure> {
             let _spinner = Spinner::new("compiling the runtime-assembled model".to_owned());
             let mut command = Command::new(programs::cargo());
             command.args(["build", "--release", "--package", "gyro-assembled", "--example", ANSWERING]);
+            command.args(["--features", "child"]);
             programs::executable(command.current_dir(root), ANSWERING)
         }
         None => std::env::current_exe().map_err(|e| Failure::Run(format!("this program is not found: {e}"))),
@@ -141,15 +142,6 @@ pub(crate) fn assembled() -> Result<PathBuf, Failure> {
 
 /// The program of the package `gyro-assembled`, and the word for it here.
 const ANSWERING: &str = "answer";
-
-/// Answers requests with the runtime-assembled model.
-pub(crate) fn answer(args: &AnswerArgs) -> Result<(), Failure> {
-    let mut model = scene::read(&args.model)?;
-    model.counts_work = true;
-    // Whoever asks has heard of a failure.
-    gyro_assembled::child::main_by_names(&model, &args.form, &args.precision);
-    Ok(())
-}
 
 /// Compiles these kernels for `f64`, optimised; the library, in which each has its symbol.
 pub(crate) fn library(module: &Module, kernels: &[Kernel]) -> Result<PathBuf, Failure> {

@@ -107,7 +107,7 @@ pub fn deriving(model: &Model) -> Spinner {
     if bodies > LARGE {
         remarks::note(&format!(
             "`{}` has {bodies} moving bodies: deriving and proving its formulas takes up to {:.1} GB of memory, and a minute for each 200 of them or longer; compiling them \
-             takes longer still. `simulate --engine recursive` (trees) and `--engine assembled` begin at once",
+             takes longer still. `simulate --engine assembled` begins at once",
             model.name,
             GIGABYTES * bodies as f64,
         ));

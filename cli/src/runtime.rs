@@ -10,18 +10,18 @@
 //! ```
 
 use crate::failure::Failure;
+use flate2::read::GzDecoder;
+use std::collections::BTreeMap;
 use std::collections::hash_map::DefaultHasher;
 use std::fs::{self, File};
 use std::hash::{Hash, Hasher};
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, SystemTime};
-use zip::ZipArchive;
 
 /// Packed by the build script.
-const ARCHIVE: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/runtime.zip"));
+const ARCHIVE: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/runtime.json.gz"));
 
 /// Where the cache is, if not in the folder that the system has for it.
 const VARIABLE: &str = "GYRO_CACHE";
@@ -35,9 +35,22 @@ const FORGOTTEN: Duration = Duration::from_hours(30 * 24);
 /// The folder of all versions.
 pub(crate) fn cache() -> Result<PathBuf, Failure> {
     let told = std::env::var_os(VARIABLE).filter(|path| !path.is_empty()).map(PathBuf::from);
-    told.or_else(|| Some(dirs::cache_dir()?.join("gyro"))).ok_or_else(|| {
+    told.or_else(|| Some(of_user()?.join("gyro"))).ok_or_else(|| {
         Failure::Usage(format!("this user has no folder for caches: set {VARIABLE} to a folder"))
     })
+}
+
+/// The folder that the system has for a user's caches.
+fn of_user() -> Option<PathBuf> {
+    let told = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let at_home = |folder: &str| Some(std::env::home_dir()?.join(folder));
+    if cfg!(windows) {
+        told("LOCALAPPDATA")
+    } else if cfg!(target_os = "macos") {
+        at_home("Library/Caches")
+    } else {
+        told("XDG_CACHE_HOME").or_else(|| at_home(".cache"))
+    }
 }
 
 /// The folder in which this program builds, with the sources in it.
@@ -78,9 +91,7 @@ fn unpacked(cache: &Path, archive: &[u8]) -> std::io::Result<PathBuf> {
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let scratch = cache.join(format!("unpacking-{}-{number}", std::process::id()));
         let _ = fs::remove_dir_all(&scratch);
-        let unpacked =
-            ZipArchive::new(Cursor::new(archive)).and_then(|mut archive| archive.extract(&scratch));
-        unpacked.map_err(std::io::Error::other).inspect_err(|_| {
+        extract(archive, &scratch).inspect_err(|_| {
             let _ = fs::remove_dir_all(&scratch);
         })?;
         if let Err(error) = fs::rename(&scratch, &folder) {
@@ -94,6 +105,17 @@ fn unpacked(cache: &Path, archive: &[u8]) -> std::io::Result<PathBuf> {
     }
     File::create(folder.join(MARK))?.set_modified(SystemTime::now())?;
     Ok(folder)
+}
+
+/// Writes the files of an archive: an object of JSON with the text of each.
+fn extract(archive: &[u8], folder: &Path) -> std::io::Result<()> {
+    let texts: BTreeMap<PathBuf, String> = serde_json::from_reader(GzDecoder::new(archive))?;
+    for (name, text) in texts {
+        let path = folder.join(name);
+        path.parent().map_or(Ok(()), fs::create_dir_all)?;
+        fs::write(path, text)?;
+    }
+    Ok(())
 }
 
 /// Removes the folders of other versions that have not been used for a long time.

@@ -157,12 +157,7 @@ fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs, approach: &Appro
         (_, Some(what)) => {
             format!("joint coordinates are for mechanisms that have them, and `{}` has {what}", model.name)
         }
-        (Engine::Recursive, None) => {
-            "the recursive form runs in maximal states, though it solves in joint coordinates: \
-             for generated code in joint coordinates leave out --engine recursive"
-                .to_owned()
-        }
-        (Engine::Assembled | Engine::Dense, None) => {
+        (Engine::Assembled, None) => {
             "runtime-assembled models run in maximal coordinates: for joint coordinates leave out --engine"
                 .to_owned()
         }

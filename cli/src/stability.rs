@@ -3,7 +3,9 @@
 
 use crate::failure::Failure;
 use crate::progress::Spinner;
+use crate::side_by_side::side_by_side;
 use crate::{chain, files, places, scene};
+use chacha20::ChaCha8Rng;
 use gyro_assembled::Dense;
 use gyro_codegen::{Functions, Kernel};
 use gyro_model::{Model, Number, Parameter, Rational};
@@ -12,8 +14,6 @@ use gyro_verifier::field::Precision;
 use gyro_verifier::module::Module;
 use gyro_verifier::rounding::{KERNELS, Trial, relative_error, trial};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -144,13 +144,13 @@ impl Subject {
     /// Errors of some configurations of the kind at this place of [`KINDS`].
     fn errors(&self, place: usize, configurations: usize) -> Vec<Errors> {
         let of = |n: usize| self.draw(place, (n, configurations))?.errors(&self.module);
-        (0..configurations).into_par_iter().filter_map(of).collect()
+        side_by_side(configurations, of).into_iter().flatten().collect()
     }
 
     /// The same of modules with the numbers of each configuration.
     fn folded_errors(&self, original: &Model, place: usize, configurations: usize) -> Vec<Folded> {
         let of = |n: usize| self.draw(place, (n, configurations))?.folded_errors(original);
-        (0..configurations).into_par_iter().filter_map(of).collect()
+        side_by_side(configurations, of).into_iter().flatten().collect()
     }
 
     /// One of so many configurations of a kind.

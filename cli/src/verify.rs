@@ -6,12 +6,12 @@ use crate::invocation::program;
 use crate::places::{Place, all_model_files, module_path};
 use crate::progress::Spinner;
 use crate::remarks::say;
+use crate::side_by_side::side_by_side;
 use crate::words::count;
 use crate::{files, remarks, rounding, scene, stability};
 use gyro_codegen::Module;
 use gyro_model::Model;
 use gyro_verifier::{Depth, Report, Seed, verify, verify_at, with_proof};
-use rayon::prelude::*;
 use std::fs;
 use std::path::Path;
 
@@ -21,7 +21,7 @@ pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
     let pages = if args.models.is_empty() { all_model_files(&places)? } else { args.models.clone() };
     if args.rounding {
         let tables: Result<Vec<rounding::Table>, Failure> =
-            pages.par_iter().map(|page| rounding_of(&places, page)).collect();
+            side_by_side(pages.len(), |k| rounding_of(&places, &pages[k])).into_iter().collect();
         return say(&rounding::report(&tables?));
     }
     if let Some(configurations) = args.stability {
@@ -30,7 +30,7 @@ pub(crate) fn verify_models(args: &VerifyArgs) -> Result<(), Failure> {
     let seed = args.seed.unwrap_or_else(Seed::fresh);
     let depth = if args.quick { Depth::Quick } else { Depth::Full };
     let reports: Result<Vec<Report>, Failure> =
-        pages.par_iter().map(|page| verify_model(&places, page, depth, seed)).collect();
+        side_by_side(pages.len(), |k| verify_model(&places, &pages[k], depth, seed)).into_iter().collect();
     let reports = reports?;
     let text = if args.json {
         format!("{}\n", serde_json::Value::Array(reports.iter().map(Report::to_json).collect()))

@@ -108,7 +108,7 @@ fn mistakes_are_found_before_the_run() {
         (&["--linearize", "0"], "--linearize is an option of simulate"),
         (&["--compare", "steam"], "PARAMETER=VALUE, an engine or a model file was expected"),
         (&["--compare", "mass=1"], "mass"),
-        (&["--coordinates", "joint", "--engine", "dense"], "--coordinates joint"),
+        (&["--coordinates", "joint", "--engine", "assembled"], "--coordinates joint"),
     ] {
         let output = show("examples/pendulum.toml", &page, options);
         let found = String::from_utf8_lossy(&output.stderr).into_owned();

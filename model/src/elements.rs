@@ -212,38 +212,29 @@ pub struct Output {
     pub kind: OutputKind,
 }
 
+/// A frame that is fixed in a body.
+#[derive(Clone, Debug)]
+pub struct BodyFrame {
+    /// Index of the body.
+    pub body: usize,
+    /// Its origin in the body's frame, m.
+    pub point: [Number; 3],
+    /// How it is turned in the body's frame: Euler parameters of any length; `None` where it has the body's axes.
+    pub orientation: Option<[Number; 4]>,
+}
+
 /// The kinds of output.
 #[derive(Clone, Debug)]
 pub enum OutputKind {
-    /// Position r of a point of a body (m, global) and the body's Euler parameters.
-    Pose {
-        /// Index of the body.
-        body: usize,
-        /// Point in its frame, m.
-        point: [Number; 3],
-    },
-    /// Velocity of a point of a body (m/s, global) and its angular velocity (rad/s, body frame).
-    Velocity {
-        /// Index of the body.
-        body: usize,
-        /// Point in its frame, m.
-        point: [Number; 3],
-    },
-    /// Acceleration of a point of a body (m/s², global) and its angular acceleration (rad/s², body frame).
-    Acceleration {
-        /// Index of the body.
-        body: usize,
-        /// Point in its frame, m.
-        point: [Number; 3],
-    },
-    /// What an inertial sensor reads: specific force `Aᵀ(r̈ − g)` (m/s²) at a point and angular rate w' (rad/s), both
-    /// in the body's frame.
-    Inertial {
-        /// Index of the body.
-        body: usize,
-        /// Point in its frame, m.
-        point: [Number; 3],
-    },
+    /// Position r of a frame's origin (m, global) and the frame's Euler parameters.
+    Pose(BodyFrame),
+    /// Velocity of a frame's origin (m/s, global) and its angular velocity (rad/s, by its own axes).
+    Velocity(BodyFrame),
+    /// Acceleration of a frame's origin (m/s², global) and its angular acceleration (rad/s², by its own axes).
+    Acceleration(BodyFrame),
+    /// What an inertial sensor reads that is fixed in a frame: specific force `Aᵀ(r̈ − g)` (m/s²) at its origin and
+    /// angular rate w' (rad/s), both by its axes.
+    Inertial(BodyFrame),
     /// Constraint force (N) and torque about the second body's joint point (N·m) that a joint exerts on its second
     /// body, both in the first body's joint frame (f, g, h). Friction, springs, motors and drivers in the joint are not
     /// part of it.
@@ -280,13 +271,33 @@ pub enum OutputKind {
 }
 
 impl OutputKind {
+    /// The frame that it is of, of those that are of one.
+    pub fn frame(&self) -> Option<&BodyFrame> {
+        match self {
+            Self::Pose(frame) | Self::Velocity(frame) | Self::Acceleration(frame) | Self::Inertial(frame) => {
+                Some(frame)
+            }
+            _ => None,
+        }
+    }
+
+    /// The same, to be changed.
+    pub fn frame_mut(&mut self) -> Option<&mut BodyFrame> {
+        match self {
+            Self::Pose(frame) | Self::Velocity(frame) | Self::Acceleration(frame) | Self::Inertial(frame) => {
+                Some(frame)
+            }
+            _ => None,
+        }
+    }
+
     /// Suffix and unit of each of the output's numbers, in order. An output of one number has no suffix.
     pub fn columns(&self) -> &'static [(&'static str, &'static str)] {
         match self {
-            Self::Pose { .. } => {
+            Self::Pose(_) => {
                 &[("rx", "m"), ("ry", "m"), ("rz", "m"), ("e0", ""), ("e1", ""), ("e2", ""), ("e3", "")]
             }
-            Self::Velocity { .. } => &[
+            Self::Velocity(_) => &[
                 ("vx", "m/s"),
                 ("vy", "m/s"),
                 ("vz", "m/s"),
@@ -294,7 +305,7 @@ impl OutputKind {
                 ("wy", "rad/s"),
                 ("wz", "rad/s"),
             ],
-            Self::Acceleration { .. } => &[
+            Self::Acceleration(_) => &[
                 ("ax", "m/s2"),
                 ("ay", "m/s2"),
                 ("az", "m/s2"),
@@ -302,7 +313,7 @@ impl OutputKind {
                 ("dwy", "rad/s2"),
                 ("dwz", "rad/s2"),
             ],
-            Self::Inertial { .. } => &[
+            Self::Inertial(_) => &[
                 ("fx", "m/s2"),
                 ("fy", "m/s2"),
                 ("fz", "m/s2"),

@@ -1,6 +1,6 @@
 //! Formulas of what is seen of a mechanism.
 
-use crate::{Model, Number, Seen};
+use crate::{Number, Seen};
 
 /// Arithmetic with numbers of the model file and numbers of the mechanism, such as `"pan rate * length - 0.3"`.
 #[derive(Clone, Debug)]
@@ -36,16 +36,5 @@ impl Formula {
                 parts.iter().flat_map(Self::numbers).collect()
             }
         }
-    }
-}
-
-impl Model {
-    /// The formula that a text denotes, in the grammar of the model file's expressions: names are those of parameters
-    /// and of columns of a run's table.
-    ///
-    /// # Errors
-    /// Says what is wrong with it and what to write.
-    pub fn formula(&self, text: &str) -> Result<Formula, String> {
-        crate::parse::formulas::formula_of(self, text)
     }
 }

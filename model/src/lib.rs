@@ -9,7 +9,6 @@
 #![deny(missing_docs)]
 
 mod assemble;
-mod computation;
 mod contact;
 mod controller;
 mod diagnostics;
@@ -25,6 +24,7 @@ mod numbers;
 mod parse;
 mod queries;
 mod redundancy;
+mod scalar;
 mod shape;
 mod spatial;
 mod spline;
@@ -32,20 +32,19 @@ mod tree;
 mod validate;
 
 pub use assemble::{AssemblyError, JointStart, Move, START_TOLERANCE, Start, StartTolerances};
-pub use computation::Computation;
 pub use contact::Contact;
 pub use controller::{Controller, Law, Seen};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
-    CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame, Output,
-    OutputKind, StopSide,
+    BodyFrame, CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame,
+    Output, OutputKind, StopSide,
 };
 pub use event::{Direction, Event};
 pub use formula::Formula;
 pub use kinematics::Kinematics;
 pub use lines::Lines;
 pub use motion::{BodyMotion, Motion, Prescribed};
-pub use number::{Number, Rational, parse_decimal, to_f64};
+pub use number::{Computation, Number, Rational, parse_decimal, to_f64};
 pub use parse::{column, is_keyword, meant, read, read_with};
 pub use redundancy::{Analysis, analyse};
 pub use shape::{Shape, ShapeKind};

@@ -2,7 +2,7 @@
 
 use num_dual::Dual2_64;
 
-use crate::kinematics::{Scalar, product};
+use crate::scalar::{Scalar, product};
 use crate::{Body, Lines, Model, Number, Quaternion, Spline, Vector, unit_vector};
 
 /// A function of time with values in rad or m.
@@ -156,5 +156,34 @@ impl Body {
     /// The same with the sign of the two that is nearer to the identity.
     pub(crate) fn unit_orientation(&self, model: &Model) -> Quaternion {
         self.given_orientation(model).nearest(Quaternion::IDENTITY)
+    }
+}
+
+impl Motion {
+    /// All straight lines that are part of it.
+    pub(crate) fn lines(&self) -> Vec<&Lines> {
+        match self {
+            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Table(_) => Vec::new(),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().flat_map(Self::lines).collect(),
+            Self::Lines(lines) => vec![lines],
+        }
+    }
+
+    pub(crate) fn lines_mut(&mut self) -> Vec<&mut Lines> {
+        match self {
+            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Table(_) => Vec::new(),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter_mut().flat_map(Self::lines_mut).collect(),
+            Self::Lines(lines) => vec![lines],
+        }
+    }
+}
+
+impl BodyMotion {
+    pub(crate) fn parts(&self) -> impl Iterator<Item = &Motion> {
+        self.translation.iter().chain(self.rotations.iter().map(|(_, angle)| angle))
+    }
+
+    pub(crate) fn parts_mut(&mut self) -> impl Iterator<Item = &mut Motion> {
+        self.translation.iter_mut().chain(self.rotations.iter_mut().map(|(_, angle)| angle))
     }
 }

@@ -1,11 +1,13 @@
 //! Numbers of the model file: exact rationals, references to parameters, or what is computed from these.
 
+mod computation;
+
+pub use computation::Computation;
+
 use std::sync::Arc;
 
 use num_bigint::BigInt;
 use num_traits::{One, Signed, ToPrimitive, Zero};
-
-use crate::Computation;
 
 /// An exact rational of any size.
 pub type Rational = num_rational::BigRational;

@@ -1,6 +1,6 @@
 //! All numbers of a model.
 
-use crate::{ForceKind, Model, Motion, Number, OutputKind, Shape, ShapeKind};
+use crate::{ForceKind, Model, Motion, Number, Shape, ShapeKind};
 
 impl Model {
     /// Every number of the model file that stands in the model, those of the start included.
@@ -30,7 +30,9 @@ impl Model {
         self.couplers.iter().for_each(|coupler| numbers.extend([&coupler.ratio, &coupler.offset]));
         self.drivers.iter().for_each(|driver| driver.motion.add_numbers(&mut numbers));
         self.forces.iter().for_each(|force| force.kind.add_numbers(&mut numbers));
-        self.outputs.iter().for_each(|output| numbers.extend(output.kind.point().into_iter().flatten()));
+        for frame in self.outputs.iter().filter_map(|output| output.kind.frame()) {
+            numbers.extend(frame.point.iter().chain(frame.orientation.iter().flatten()));
+        }
         self.controllers.iter().for_each(|controller| numbers.extend(controller.numbers()));
         for event in &self.events {
             numbers.push(&event.level);
@@ -85,19 +87,6 @@ impl ForceKind {
             Self::Load { point, force, torque, .. } => {
                 numbers.extend(point.iter().chain(force).chain(torque));
             }
-        }
-    }
-}
-
-impl OutputKind {
-    /// The point of a body that the output is about.
-    fn point(&self) -> Option<&[Number; 3]> {
-        match self {
-            Self::Pose { point, .. }
-            | Self::Velocity { point, .. }
-            | Self::Acceleration { point, .. }
-            | Self::Inertial { point, .. } => Some(point),
-            _ => None,
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use crate::redundancy::analyse_with_start;
 use crate::{
-    CoordinateKind, CoordinateUse, Force, ForceKind, JointCoordinate, JointKind, Model, Number, Parameter,
-    PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start, Support, Tree, to_f64,
+    BodyMotion, CoordinateKind, CoordinateUse, Force, ForceKind, JointCoordinate, JointKind, Lines, Model,
+    Motion, Number, Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start, Support,
+    Tree, to_f64,
 };
 use std::ops::Range;
 
@@ -396,5 +397,20 @@ impl Model {
             return Err(problem);
         }
         model.keeps_redundant_rows().map(|start| (model, Some(start)))
+    }
+}
+
+impl Model {
+    /// All motions along straight lines, each with the name of the driver or body that moves so.
+    pub fn lines(&self) -> Vec<(&str, &Lines)> {
+        let of_drivers = self
+            .drivers
+            .iter()
+            .flat_map(|driver| driver.motion.lines().into_iter().map(|lines| (driver.name.as_str(), lines)));
+        let of_bodies = self.bodies.iter().flat_map(|body| {
+            let parts = body.motion.iter().flat_map(BodyMotion::parts).flat_map(Motion::lines);
+            parts.map(|lines| (body.name.as_str(), lines))
+        });
+        of_drivers.chain(of_bodies).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use num_dual::Dual2_64;
 
-use crate::kinematics::Scalar;
+use crate::scalar::Scalar;
 
 /// Natural cubic spline through given points: twice continuously differentiable, also where it goes on as a straight
 /// line before the first and after the last point (its second derivative is zero there).

@@ -1,7 +1,7 @@
 //! Where primes and points come from.
 
+use chacha20::ChaCha8Rng;
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::fmt;
 use std::num::ParseIntError;
 use std::str::FromStr;

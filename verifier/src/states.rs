@@ -7,9 +7,9 @@ use crate::joints::{Freedom, JointLayout};
 use crate::module::Module;
 use crate::point::Point;
 use crate::seed::Seed;
+use chacha20::ChaCha8Rng;
 use gyro_model::{Model, to_f64};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Angles at which sines and cosines vanish.

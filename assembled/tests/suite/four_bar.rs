@@ -1,7 +1,7 @@
 //! A closed loop: the dense partition keeps it closed through full turns of the crank, and the energy with it.
 
 use crate::support::{dense, max_norm, model, phi, test_model, velocity_residual};
-use gyro_assembled::{Careful, Form, Unsupported};
+use gyro_assembled::{Careful, Unsupported};
 use gyro_sim::{Mechanism, Partitioned};
 
 #[test]
@@ -23,11 +23,10 @@ fn the_dense_partition_keeps_the_loop_closed() {
 }
 
 #[test]
-fn the_form_follows_the_model() {
+fn the_careful_form_is_for_trees() {
     let loops = test_model("four-bar");
-    assert_eq!(Form::for_model(&loops), Form::Dense);
     assert_eq!(Careful::<f64>::supports(&loops), Err(Unsupported::JointKind("loop_pin".to_owned())));
     assert!(Careful::<f64>::new(&loops).is_err());
-    assert_eq!(Form::for_model(&model("gyroscope")), Form::Careful);
-    assert_eq!(Form::for_model(&test_model("carried")), Form::Careful);
+    assert_eq!(Careful::<f64>::supports(&model("gyroscope")), Ok(()));
+    assert_eq!(Careful::<f64>::supports(&test_model("carried")), Ok(()));
 }

@@ -125,15 +125,9 @@ pub(crate) enum Engine {
     InProcess,
     /// Generated code as a program that rustc compiles: the same results to the last bit, after many seconds
     Generated,
-    /// The runtime-assembled model, in its careful form where the mechanism allows it (trees of revolute, spherical and
-    /// fixed joints)
+    /// The runtime-assembled model, to compare with: in its careful form for trees of revolute, spherical and fixed
+    /// joints, else in the paper's plain dense one
     Assembled,
-    /// The runtime-assembled model in the paper's plain dense form, to compare with
-    #[value(hide = true)]
-    Dense,
-    /// The runtime-assembled model as a recursion in joint coordinates, to compare with
-    #[value(hide = true)]
-    Recursive,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -183,7 +177,7 @@ impl SimulateArgs {
 impl Engine {
     /// Whether it computes what the generator derives.
     pub(crate) fn is_generated(self) -> bool {
-        !matches!(self, Self::Assembled | Self::Dense | Self::Recursive)
+        self != Self::Assembled
     }
 
     /// Its name on the command line.
@@ -192,8 +186,6 @@ impl Engine {
             Self::InProcess => "in-process",
             Self::Generated => "generated",
             Self::Assembled => "assembled",
-            Self::Dense => "dense",
-            Self::Recursive => "recursive",
         }
     }
 }

@@ -12,13 +12,15 @@ use crate::paths;
 use crate::progress::Spinner;
 use crate::scene;
 use crate::write::{self, Known};
+use flate2::Compression;
+use flate2::write::DeflateEncoder;
 use gyro_export::fmu::{Fmu, Method, OPTIONS, Settings, fmu as written};
+use rawzip::time::UtcDateTime;
+use rawzip::{CompressionMethod, ZipArchiveWriter};
 use std::ffi::{OsStr, OsString};
-use std::io::{self, Cursor, Write as _};
+use std::io::{self, Write as _};
 use std::path::Path;
 use std::{env, fs};
-use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, ZipWriter};
 
 /// Writes the archive.
 pub(super) fn fmu(args: &FmuArgs) -> Result<(), Failure> {
@@ -95,21 +97,28 @@ fn library(unit: &Fmu) -> Result<Vec<u8>, Failure> {
     fs::read(&library).map_err(|e| failed(&library, &e))
 }
 
+/// 1980-01-01, the first day that such an archive knows, s.
+const FIRST_DAY: i64 = 315_532_800;
+
 /// All of it in one file, the same bytes each time.
-fn archive(unit: &Fmu, library: Option<&[u8]>) -> zip::result::ZipResult<Vec<u8>> {
-    let options = SimpleFileOptions::DEFAULT.compression_method(CompressionMethod::Deflated);
-    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+fn archive(unit: &Fmu, library: Option<&[u8]>) -> Result<Vec<u8>, rawzip::Error> {
+    let mut archive = ZipArchiveWriter::new(Vec::new());
+    let mut add = |path: &str, content: &[u8], permissions: u32| {
+        let entry = archive.new_file(path).compression_method(CompressionMethod::DEFLATE);
+        let entry = entry.last_modified(UtcDateTime::from_unix(FIRST_DAY)).unix_permissions(permissions);
+        let (mut entry, config) = entry.start()?;
+        let mut writer = config.wrap(DeflateEncoder::new(&mut entry, Compression::default()));
+        writer.write_all(content)?;
+        let (encoder, end) = writer.finish()?;
+        encoder.finish()?;
+        entry.finish(end)
+    };
     for (path, text) in &unit.files {
-        archive.start_file(path, options)?;
-        archive.write_all(text.as_bytes())?;
+        add(path, text.as_bytes(), 0o644)?;
     }
     if let Some(library) = library {
         let (platform, suffix) = platform();
-        archive.start_file(
-            format!("binaries/{platform}/{}{suffix}", unit.identifier),
-            options.unix_permissions(0o755),
-        )?;
-        archive.write_all(library)?;
+        add(&format!("binaries/{platform}/{}{suffix}", unit.identifier), library, 0o755)?;
     }
-    Ok(archive.finish()?.into_inner())
+    archive.finish()
 }

@@ -49,7 +49,8 @@ pub(crate) fn reasons<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<(u
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::args::{Engine, Precision};
+    use crate::args::Precision;
+    use crate::report::curve::Engine;
     use crate::report::curve::{Curve, Outcome, Setting, Treatment};
     use gyro_runner::Integrator;
 

@@ -1,7 +1,7 @@
 //! What is compared: who computes, by which integrator, in which coordinates, with which correction and in which
 //! precision.
 
-use crate::args::{Engine, Precision};
+use crate::args::Precision;
 use gyro_runner::{Approach, Coordinates, Correction, Integrator, When};
 use gyro_sim::Statistics;
 
@@ -132,13 +132,25 @@ impl Setting {
     }
 }
 
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Engine {
+    /// Generated code, compiled by rustc.
+    Generated,
+    /// The runtime-assembled model as a recursion in joint coordinates.
+    Recursive,
+    /// The same in its careful form.
+    Careful,
+    /// The same in the paper's dense form.
+    Dense,
+}
+
 /// An engine as the report calls it.
 pub(crate) fn who(engine: Engine) -> &'static str {
     match engine {
         Engine::Generated => "generated",
-        Engine::InProcess => "generated, compiled in the process",
         Engine::Recursive => "assembled, recursive",
-        Engine::Assembled => "assembled, careful",
+        Engine::Careful => "assembled, careful",
         Engine::Dense => "assembled, dense",
     }
 }

@@ -3,7 +3,8 @@
 use super::curve::Treatment;
 use super::lab::{Lab, Plan};
 use super::truth::{INTERVALS, Truth};
-use crate::args::{Engine, Precision};
+use crate::args::Precision;
+use crate::report::curve::Engine;
 use gyro_runner::{Approach, Coordinates, Correction, Integrator, Settings, energy_error};
 
 /// A long run.

@@ -4,8 +4,9 @@
 use super::curve::{Curve, Setting, Treatment};
 use super::lab::{Lab, Run};
 use super::page::Page;
-use crate::args::{Engine, Precision};
+use crate::args::Precision;
 use crate::failure::Failure;
+use crate::report::curve::Engine;
 use crate::words::number;
 use crate::{files, nested, runtime};
 use gyro_codegen::{Effort, Functions, Module};

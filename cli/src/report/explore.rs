@@ -3,7 +3,8 @@
 use super::curve::{Curve, Point, Setting, Treatment};
 use super::lab::Lab;
 use super::truth::Truth;
-use crate::args::{Engine, Precision};
+use crate::args::Precision;
+use crate::report::curve::Engine;
 use gyro_assembled::{Careful, Recursive};
 use gyro_runner::{Correction, Integrator};
 
@@ -96,7 +97,7 @@ pub(crate) fn assembled_forms(lab: &Lab) -> Vec<Engine> {
         assembled_forms.push(Engine::Recursive);
     }
     if Careful::<f64>::supports(&lab.model).is_ok() {
-        assembled_forms.push(Engine::Assembled);
+        assembled_forms.push(Engine::Careful);
     }
     assembled_forms.push(Engine::Dense);
     assembled_forms

@@ -7,7 +7,8 @@ use super::chart::{
 use super::curve::{Curve, Outcome, Point, Setting, Treatment, who};
 use super::drift::Drift;
 use super::stability::Map;
-use crate::args::{Engine, Precision};
+use crate::args::Precision;
+use crate::report::curve::Engine;
 use gyro_runner::{Correction, Integrator};
 
 /// Below rounding nothing is shown, and above one nothing is known.
@@ -139,7 +140,7 @@ const GROUPS: [Group; 8] = [
         ours(c, Precision::F32) && c.treatment.is_corrected()
     }),
     ("assembled, recursive", style_of(ORANGE, Stroke::Solid), |c| c.engine == Engine::Recursive),
-    ("assembled, careful", style_of(VERMILION, Stroke::Solid), |c| c.engine == Engine::Assembled),
+    ("assembled, careful", style_of(VERMILION, Stroke::Solid), |c| c.engine == Engine::Careful),
     ("assembled, dense", style_of(BLACK, Stroke::Solid), |c| c.engine == Engine::Dense),
 ];
 

@@ -2,7 +2,8 @@
 
 use super::best::{best, smallest_error};
 use super::curve::{Point, Setting, Treatment};
-use crate::args::{Engine, Precision};
+use crate::args::Precision;
+use crate::report::curve::Engine;
 use crate::words::number;
 
 /// A goal with the value reached; `None` where nothing was.

@@ -8,8 +8,9 @@ use super::goals;
 use super::page::Page;
 use super::study::Study;
 use super::write::{CHOICES, own};
-use crate::args::{Engine, Precision};
+use crate::args::Precision;
 use crate::failure::Failure;
+use crate::report::curve::Engine;
 use crate::words::number;
 use std::path::{Path, PathBuf};
 

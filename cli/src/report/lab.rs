@@ -1,8 +1,8 @@
 //! A scene and the programs that compute it.
 
-use super::curve::{Curve, Outcome, Point, Setting, Treatment};
+use super::curve::{Curve, Engine, Outcome, Point, Setting, Treatment, who};
 use super::truth::{INTERVALS, Truth};
-use crate::args::{Engine, Precision};
+use crate::args::Precision;
 use crate::failure::Failure;
 use crate::nested::{self, Session};
 use crate::runs::Runs;
@@ -153,10 +153,10 @@ impl Lab {
             .run((engine, Precision::F64), &self.plan(&curve, setting, 10_000_000, None))
             .map_err(Failure::Run)?;
         let source = format!(
-            "the {} form of the runtime-assembled model by dop853 at a tolerance of {TIGHT:e}, because this model file has no \
+            "the runtime-assembled model ({}) by dop853 at a tolerance of {TIGHT:e}, because this model file has no \
              reference solution: errors below {FLOOR:e} are not \
              known and are shown as that",
-            engine.name()
+            who(engine)
         );
         Ok(Truth::of_samples(&self.model, (source, FLOOR), &run.samples))
     }
@@ -258,13 +258,13 @@ impl Lab {
 
     fn open(&self, (engine, precision): (Engine, Precision)) -> Result<Session, Failure> {
         let form = match engine {
-            engine if engine.is_generated() => {
+            Engine::Generated => {
                 let program = usize::from(precision == Precision::F32);
                 return Session::open(&self.programs[program], &[]);
             }
             Engine::Recursive => "recursive",
-            Engine::Assembled => "careful",
-            _ => "dense",
+            Engine::Careful => "careful",
+            Engine::Dense => "dense",
         };
         let model = self.path.to_string_lossy();
         let arguments = ["answer", &model, form, precision.name()];

@@ -1,8 +1,9 @@
 //! Limits of stability: in theory, from eigenvalues and the methods' own amplification; and as runs find them.
 
 use super::lab::{Lab, Plan};
-use crate::args::{Engine, Precision};
+use crate::args::Precision;
 use crate::linear::Linear;
+use crate::report::curve::Engine;
 use gyro_assembled::Dense;
 use gyro_model::{ForceKind, Model, Number, Rational, to_f64};
 use gyro_runner::{Approach, Coordinates, Correction, Integrator, JointSample, Sample, Settings, When};

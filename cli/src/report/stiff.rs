@@ -4,8 +4,9 @@ use super::curve::{Curve, Setting, Treatment};
 use super::goals::{Goal, Limit};
 use super::lab::Lab;
 use super::limits::{self, Knob, Spectrum};
-use crate::args::{Engine, Precision};
+use crate::args::Precision;
 use crate::failure::Failure;
+use crate::report::curve::Engine;
 use gyro_runner::{Coordinates, Integrator};
 
 /// A model file, the steps that Rodas may take for its second, the limit of RK4 by the literature, and how much dearer

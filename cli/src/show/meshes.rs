@@ -179,8 +179,8 @@ fn parsed(bytes: Vec<u8>, path: &Path) -> io::Result<Scene> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chacha20::ChaCha8Rng;
     use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
 
     fn refused(bytes: &[u8], name: &str) -> String {
         whole(bytes.to_vec(), Path::new(name)).expect_err(name).to_string()

@@ -1,8 +1,8 @@
 //! Files of every kind that is read, changed at random.
 
 use super::{Folder, double, fault, written};
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 const HINGE: &str = "format = 1\nname = \"hinge\"\n[simulation]\nt_end = 0.02\nsample_every = 0.01\n[inputs]\nu = 0\n\
     [[body]]\nname = \"wall\"\nfixed = true\n[[body]]\nname = \"rod\"\nmass = 1\ninertia = [0.1, 0.1, 0.1]\n\

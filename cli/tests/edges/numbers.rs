@@ -1,8 +1,8 @@
 //! Every number of a model file and of the command line, drawn from all doubles.
 
 use super::{Folder, double, fault, missing, written};
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
 
 /// A model file that has a number in almost every place that there is.

@@ -3,10 +3,10 @@
 
 use super::pose::{Pose, add, cross, dot, rotation, scale, turned, turned_back};
 use super::{Folder, xtask};
+use chacha20::ChaCha8Rng;
 use gyro_model::{Model, Number, Rational, Support};
 use rand::seq::{IndexedRandom, SliceRandom};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::fs;

@@ -2,8 +2,8 @@
 //! ledger of their energy.
 
 use crate::support::{Folder, json, model, refused, simulate};
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;

@@ -2,8 +2,8 @@
 
 use crate::plants::{Law, Loop, Plant, WHEEL, difference, exact};
 use crate::support::{Folder, json, model, refused, simulate, xtask};
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::fs;
 
 const METHODS: [&[&str]; 6] = [
@@ -21,7 +21,7 @@ const METHODS: [&[&str]; 6] = [
         "--correction",
         "mass-weighted",
     ],
-    &["--engine", "recursive", "--integrator", "dop853", "--tolerance", "1e-12", "--correction", "none"],
+    &["--engine", "assembled", "--integrator", "dop853", "--tolerance", "1e-12", "--correction", "none"],
 ];
 
 /// What methods at these tolerances are right to, of motions of the size of one.

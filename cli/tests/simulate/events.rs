@@ -114,8 +114,8 @@ fn events_are_found_by_all_engines_and_methods() {
         ([&joint[..], &["--integrator", "tsit5", "--tolerance", "1e-9"]].concat(), 1e-7),
         ([&joint[..], &["--integrator", "rodas4", "--tolerance", "1e-9"]].concat(), 1e-6),
         ([&["--engine", "assembled"][..], &fine].concat(), 1e-11),
-        ([&["--engine", "recursive"][..], &fine, &["--correction", "none"]].concat(), 1e-11),
-        ([&["--engine", "dense", "--step", "1e-3"][..]].concat(), 1e-9),
+        ([&["--engine", "assembled"][..], &fine, &["--correction", "none"]].concat(), 1e-11),
+        ([&["--engine", "assembled", "--step", "1e-3"][..]].concat(), 1e-9),
         ([&joint[..], &["--step", "1e-3"]].concat(), 1e-9),
     ] {
         compare(&json(&folder, &[&["oscillators.toml"], &args[..]].concat()), close);

@@ -343,9 +343,8 @@ fn all_engines_follow_inputs_under_error_control() {
         json(&folder, &args.into_iter().chain(with.split(' ')).collect::<Vec<_>>())
     };
     let by = [
-        "--engine dense --integrator dop853",
         "--engine assembled --integrator tsit5",
-        "--engine recursive --integrator dop853",
+        "--engine assembled --integrator dop853",
         "--engine generated --integrator dop853 --coordinates joint",
         #[cfg(feature = "jit")]
         "--engine jit --integrator rodas4 --coordinates joint",

@@ -1,8 +1,8 @@
 //! Which of the two that stand for an orientation tables show: the one that is continuous from the start.
 
 use crate::support::{Folder, simulate};
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::fmt::Write as _;
 use std::fs;
 
@@ -70,7 +70,7 @@ fn a_controller_drives_the_same_motion_in_all_coordinates() {
     let runs: [&[&str]; 3] = [
         &["--engine", "jit", "--coordinates", "joint"],
         &["--engine", "jit", "--coordinates", "maximal"],
-        &["--engine", "dense"],
+        &["--engine", "assembled"],
     ];
     let last = runs.map(|args| {
         let (head, rows) = table(&folder, "controlled", args);

@@ -1,8 +1,8 @@
 //! Linear plants in closed loops, exact between samples.
 
+use chacha20::ChaCha8Rng;
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
 use std::fmt::Write as _;
 

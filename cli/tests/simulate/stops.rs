@@ -2,8 +2,8 @@
 
 use crate::contacts::chain;
 use crate::support::{Folder, json, refused, simulate};
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
 use std::fs;
 

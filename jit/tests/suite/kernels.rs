@@ -1,12 +1,12 @@
 //! Every kernel of every kind of mechanism: machine code has the bits of its tape.
 
+use chacha20::ChaCha8Rng;
 use gyro_codegen::{Effort, Functions, Kernel, Scheduled};
 use gyro_jit::{Arguments, Compiled, Engine, Native, compile_scheduled};
 use gyro_model::Model;
 use gyro_sim::Real;
 use gyro_sim::lanes::{Lanes, f64x2};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::fs;
 use std::path::Path;
 

@@ -1,6 +1,7 @@
 //! Nothing that is computed of a joint state depends on the lengths of its Euler parameters, but their own rates, which
 //! are in proportion to them. The lengths change by powers of two, which no operation rounds: all bits stay.
 
+use chacha20::ChaCha8Rng;
 use gyro_codegen::{Effort, Functions};
 use gyro_jit::Compiled;
 use gyro_model::Model;
@@ -10,7 +11,6 @@ use gyro_sim::{
     Solver, Tsit5,
 };
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// What a function gives.
 struct Found {

@@ -1,6 +1,7 @@
 //! A mechanism compiled in the process against the same one compiled by rustc: every function of the contract has the
 //! same bits, at states on the constraints and off them, and so have short runs.
 
+use chacha20::ChaCha8Rng;
 use gyro_codegen::{Effort, Functions};
 use gyro_jit::Compiled;
 use gyro_model::Model;
@@ -9,7 +10,6 @@ use gyro_sim::{
     Mechanism, Ode, Partition, Projection, Solver,
 };
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// What is not a number is alike.
 fn bits(numbers: &[f64]) -> Vec<u64> {

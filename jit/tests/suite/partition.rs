@@ -1,13 +1,13 @@
 //! The partition through joint coordinates against pivoting, which shares no function with it but the constraints: of
 //! what the one has corrected the other finds nothing left to correct, on shipped and on random model files.
 
+use chacha20::ChaCha8Rng;
 use gyro_codegen::{Effort, Functions, Group};
 use gyro_jit::{Independent, OnHeap};
 use gyro_model::Model;
 use gyro_sim::pivoting::{self, Choice};
 use gyro_sim::{CloseLoops, JointSpace, Mechanism, Partition, Partitioning, refer_turns, violation};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// How far states drift before they are corrected.
 const DRIFT: f64 = 1e-6;

@@ -5,12 +5,12 @@
 //! acceleration is known in closed form, and this is computed here as it is written: in `f64`, and in 384 bits. Neither
 //! knows of the generator.
 
+use chacha20::ChaCha8Rng;
 use gyro_codegen::{Effort, Functions, ROUNDING};
 use gyro_model::Rational;
 use gyro_sim::{Joint, JointSpace, Rk4};
 use gyro_verifier::field::{Field, Precision, Real};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::fmt::Write as _;
 
 /// Cases; `GYRO_CASES` asks for more.

@@ -1,6 +1,7 @@
 //! Gear trains at random, under gravity: the partition, which takes angles from their turn references, against joint
 //! coordinates at a fine tolerance and against pivoting, which reads them off the poses.
 
+use chacha20::ChaCha8Rng;
 use gyro_codegen::{Effort, Functions};
 use gyro_jit::OnHeap;
 use gyro_sim::pivoting::{self, Choice};
@@ -9,7 +10,6 @@ use gyro_sim::{
     refer_turns,
 };
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 

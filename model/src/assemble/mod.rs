@@ -18,8 +18,6 @@ mod walk;
 pub use error::AssemblyError;
 pub use tolerance::{START_TOLERANCE, StartTolerances};
 
-pub(crate) use crate::kinematics::cross;
-
 use crate::{JointCoordinate, Model, Quaternion, RowOwner, Tree, kinematics::Kinematics};
 use guess::guesses;
 use walk::{Walk, roots};

@@ -3,9 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 use num_dual::Dual64;
 
-use super::geometry::{Pose, Scalar, product};
+use super::geometry::Pose;
 use super::joint::Posed;
 use super::{Kinematics, Place};
+use crate::scalar::{Scalar, product};
 use crate::{JointCoordinate, Quaternion, RowOwner, RowUnit};
 
 /// One or some scalar equations with one meaning.

@@ -1,27 +1,13 @@
 //! Vectors, quaternions and poses over any scalar: floating point, or dual numbers that carry a derivative along.
 
-use num_dual::{Dual64, DualNum};
+use num_dual::Dual64;
 
+use crate::scalar::Scalar;
 use crate::{Quaternion, Vector};
-
-/// A number that the kinematics is written in.
-pub(crate) trait Scalar: DualNum<Primitive = f64> + Copy {}
-
-impl<T: DualNum<Primitive = f64> + Copy> Scalar for T {}
 
 /// Scalar product.
 pub(crate) fn dot<D: Scalar>(a: [D; 3], b: [D; 3]) -> D {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// Quaternion product: first the right rotation, then the left one.
-pub(crate) fn product<D: Scalar>([a, b, c, d]: [D; 4], [w, x, y, z]: [D; 4]) -> [D; 4] {
-    [
-        a * w - b * x - c * y - d * z,
-        a * x + b * w + c * z - d * y,
-        a * y - b * z + c * w + d * x,
-        a * z + b * y - c * x + d * w,
-    ]
 }
 
 /// The angle whose sine and cosine are in the ratio of two numbers, continuous: within half a turn of `near`.

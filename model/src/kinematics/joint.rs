@@ -1,7 +1,8 @@
 //! What a joint is: its rows of Φ and its coordinates, written once over any scalar.
 
 use super::exact::{cross, exact};
-use super::geometry::{Pose, Scalar, angle, dot};
+use super::geometry::{Pose, angle, dot};
+use crate::scalar::Scalar;
 use crate::{CoordinateKind, JointEnd, JointKind, Model, PointAxes, Quaternion, Vector, unit_vector};
 
 /// A joint in `f64`.

@@ -11,7 +11,7 @@ mod size;
 
 pub(crate) use equation::Equation;
 pub(crate) use exact::{cross, exact};
-pub(crate) use geometry::{Pose, Scalar, dot, product};
+pub(crate) use geometry::{Pose, dot};
 pub(crate) use joint::JointGeometry;
 
 use nalgebra::{DMatrix, DVector};

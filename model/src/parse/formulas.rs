@@ -131,3 +131,14 @@ pub(crate) fn formula_of(model: &Model, text: &str) -> Result<Formula, String> {
     let named = Named { columns: &model.visible(), parameter: &parameter, parameters: &parameters };
     named.formula(text).map_err(|Fault { words: [message, _, help], .. }| format!("{message}; {help}"))
 }
+
+impl Model {
+    /// The formula that a text denotes, in the grammar of the model file's expressions: names are those of parameters
+    /// and of columns of a run's table.
+    ///
+    /// # Errors
+    /// Says what is wrong with it and what to write.
+    pub fn formula(&self, text: &str) -> Result<Formula, String> {
+        formula_of(self, text)
+    }
+}

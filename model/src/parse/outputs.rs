@@ -2,13 +2,15 @@
 
 use toml::de::DeTable;
 
+use super::numbers::vector;
 use super::reader::Reader;
 use super::section::{self, Section};
 use super::{references, tables};
 use crate::validate::Owner;
-use crate::{Force, Number, Output, OutputKind};
+use crate::{BodyFrame, Force, Output, OutputKind};
 
-const KEYS: [&str; 8] = ["name", "kind", "body", "point", "joint", "driver", "coupler", "force"];
+const KEYS: [&str; 9] =
+    ["name", "kind", "body", "point", "orientation", "joint", "driver", "coupler", "force"];
 
 /// The kinds in the model file.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -44,7 +46,9 @@ impl Kind {
     /// The kind's own keys, after its name and kind.
     fn keys(self) -> &'static [&'static str] {
         match self {
-            Self::Pose | Self::Velocity | Self::Acceleration | Self::Inertial => &["body", "point"],
+            Self::Pose | Self::Velocity | Self::Acceleration | Self::Inertial => {
+                &["body", "point", "orientation"]
+            }
             Self::Reaction => &["joint"],
             Self::Driver => &["driver"],
             Self::Coupler => &["coupler"],
@@ -105,11 +109,13 @@ fn output(
 
 fn of_body(reader: &mut Reader<'_>, section: &Section<'_>, title: &str, kind: Kind) -> OutputKind {
     let body = references::body(reader, section, title).unwrap_or(references::NOTHING);
-    let point: [Number; 3] = section.vector_or(reader, "point", [0; 3]);
+    let point = section.vector_or(reader, "point", [0; 3]);
+    let orientation = section.get("orientation").and_then(|item| vector(reader, item));
+    let frame = BodyFrame { body, point, orientation };
     match kind {
-        Kind::Velocity => OutputKind::Velocity { body, point },
-        Kind::Acceleration => OutputKind::Acceleration { body, point },
-        Kind::Inertial => OutputKind::Inertial { body, point },
-        _ => OutputKind::Pose { body, point },
+        Kind::Velocity => OutputKind::Velocity(frame),
+        Kind::Acceleration => OutputKind::Acceleration(frame),
+        Kind::Inertial => OutputKind::Inertial(frame),
+        _ => OutputKind::Pose(frame),
     }
 }

@@ -3,6 +3,7 @@
 use num_traits::One;
 use toml::de::DeTable;
 
+use super::lines;
 use super::names;
 use super::numbers::plain_number;
 use super::reader::Reader;
@@ -12,7 +13,7 @@ use super::{
     simulation,
 };
 use crate::validate::{Owner, Place};
-use crate::{Between, Model, lines};
+use crate::{Between, Model};
 
 const KEYS: [&str; 17] = [
     "format",

@@ -7,7 +7,7 @@ use super::reader::Reader;
 use super::section::Section;
 use super::tables;
 use crate::validate::{Owner, Place};
-use crate::{Body, ForceKind, Model, Number, OutputKind};
+use crate::{Body, ForceKind, Model, Number};
 
 /// A mass and where it is in its body's frame.
 pub(super) type PointMass = (Number, [Number; 3]);
@@ -129,13 +129,8 @@ fn points(model: &mut Model, body: usize) -> Vec<&mut Vector> {
         | ForceKind::Stop { .. }
         | ForceKind::Motor { .. } => Vec::new(),
     });
-    let of_outputs = model.outputs.iter_mut().filter_map(|output| match &mut output.kind {
-        OutputKind::Pose { body, point }
-        | OutputKind::Velocity { body, point }
-        | OutputKind::Acceleration { body, point }
-        | OutputKind::Inertial { body, point } => Some((*body, point)),
-        _ => None,
-    });
+    let of_outputs = model.outputs.iter_mut().filter_map(|output| output.kind.frame_mut());
+    let of_outputs = of_outputs.map(|frame| (frame.body, &mut frame.point));
     let others = of_forces.chain(of_outputs).filter(|(of, _)| *of == body).map(|(_, point)| point);
     of_shapes.chain(of_joints).chain(others).collect()
 }

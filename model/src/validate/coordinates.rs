@@ -189,14 +189,7 @@ fn fixed_output(model: &Model, index: usize) -> Option<Problem> {
             help: format!("name a [[force]] of kind \"{kind}\""),
         });
     }
-    let (OutputKind::Pose { body, .. }
-    | OutputKind::Velocity { body, .. }
-    | OutputKind::Acceleration { body, .. }
-    | OutputKind::Inertial { body, .. }) = output.kind
-    else {
-        return None;
-    };
-    let body = model.bodies.get(body).filter(|body| body.support == Support::Fixed)?;
+    let body = model.bodies.get(output.kind.frame()?.body).filter(|body| body.support == Support::Fixed)?;
     Some(Problem {
         place: Place { owner: Owner::Output(index), key: "body" },
         also: None,

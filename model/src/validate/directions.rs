@@ -3,8 +3,8 @@
 use num_traits::Zero;
 
 use super::{Owner, Place, Problem, Side, rounded};
-use crate::assemble::cross;
-use crate::{Body, Joint, JointEnd, JointKind, Model, Number, Rational};
+use crate::kinematics::cross;
+use crate::{Body, Joint, JointEnd, JointKind, Model, Number, Output, Rational};
 
 /// The orientation of a body.
 pub(super) fn of_body(model: &Model, index: usize, body: &Body) -> Option<Problem> {
@@ -20,6 +20,13 @@ pub(super) fn of_body(model: &Model, index: usize, body: &Body) -> Option<Proble
 pub(super) fn of_start(model: &Model, index: usize, joint: &Joint) -> Option<Problem> {
     let parameters = joint.start.orientation.as_ref()?;
     zero_parameters(model, parameters, Place::joint(index, "orientation"), &format!("joint `{}`", joint.name))
+}
+
+/// The orientation of an output's frame.
+pub(super) fn of_output(model: &Model, index: usize, output: &Output) -> Option<Problem> {
+    let parameters = output.kind.frame()?.orientation.as_ref()?;
+    let place = Place { owner: Owner::Output(index), key: "orientation" };
+    zero_parameters(model, parameters, place, &format!("output `{}`", output.name))
 }
 
 fn zero_parameters(model: &Model, parameters: &[Number; 4], place: Place, of: &str) -> Option<Problem> {

@@ -26,6 +26,9 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
         found.extend(directions::of_start(model, index, joint));
         found.extend(directions::of_joint(model, index));
     }
+    found.extend(
+        model.outputs.iter().enumerate().filter_map(|(index, o)| directions::of_output(model, index, o)),
+    );
     found.extend(model.couplers.iter().enumerate().filter_map(|(index, c)| ratio(model, index, c)));
     found.extend(
         model.forces.iter().enumerate().flat_map(|(index, force)| forces::problems(model, index, force)),

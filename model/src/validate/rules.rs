@@ -61,6 +61,8 @@ impl Model {
                 rules.extend(ends.map(|end| NotParallel(&end.axis, &end.zero)));
             }
         }
+        let frames = self.outputs.iter().filter_map(|output| output.kind.frame());
+        rules.extend(frames.filter_map(|frame| frame.orientation.as_ref()).map(|p| NotZero(p)));
         rules.extend(self.couplers.iter().map(|coupler| NotZero(std::slice::from_ref(&coupler.ratio))));
         for (_, number, sign, _) in self.forces.iter().flat_map(|force| conditions(&force.kind)) {
             rules.push(if sign == Sign::Positive { Positive(number) } else { NotNegative(number) });

@@ -1,8 +1,8 @@
 //! Planar loops on carriers that turn in space: which rows are redundant does not depend on how they have turned.
 
+use chacha20::ChaCha8Rng;
 use gyro_model::{JointKind, Kinematics, Model, PointAxes, Quaternion, RowOwner, Start, Vector, read};
 use rand::{RngExt as _, SeedableRng as _};
-use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
+use chacha20::ChaCha8Rng;
 use gyro_model::{Kinematics, Model, Number, Quaternion, Rational, Start, Vector, read};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// Kinds that carry the bodies of the chain, with their keys for coordinates.
 const CARRIERS: [(&str, &[&str]); 7] = [

@@ -231,10 +231,10 @@ fn check_references(model: &Model) {
     }
     for output in &model.outputs {
         match output.kind {
-            OutputKind::Pose { body, .. }
-            | OutputKind::Velocity { body, .. }
-            | OutputKind::Acceleration { body, .. }
-            | OutputKind::Inertial { body, .. } => assert!(body < model.bodies.len()),
+            OutputKind::Pose(ref frame)
+            | OutputKind::Velocity(ref frame)
+            | OutputKind::Acceleration(ref frame)
+            | OutputKind::Inertial(ref frame) => assert!(frame.body < model.bodies.len()),
             OutputKind::Reaction { joint } => assert!(joint < model.joints.len()),
             OutputKind::Driver { driver } => assert!(driver < model.drivers.len()),
             OutputKind::Coupler { coupler } => assert!(coupler < model.couplers.len()),

@@ -2,10 +2,10 @@
 //! Jacobian, found by singular values.
 
 use crate::redundancy::{Pin, model, pinned};
+use chacha20::ChaCha8Rng;
 use gyro_model::{Kinematics, Model, analyse};
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// Singular values below this part of the largest are zero; of a null vector's reactions numbers below this are.
 const ZERO: f64 = 1e-7;

@@ -1,8 +1,8 @@
 //! Numbers that a program computed in floating point and wrote with ten digits or more are taken as what they round,
 //! and what is wrong beyond that is refused with numbers that differ to the eye.
 
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 fn read(body: &str) -> Result<gyro_model::Model, String> {
     let page =

@@ -2,10 +2,10 @@
 
 use crate::corpus::{Corpus, Emitted, TABLE};
 use crate::{text, tree};
+use chacha20::ChaCha8Rng;
 use gyro_model::{Model, read_with};
 use gyro_verifier::{Depth, verify};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::cell::RefCell;
 use std::fmt;
 use std::panic::{self, AssertUnwindSafe};

@@ -1,7 +1,7 @@
 //! Changes to a text as bytes and as tokens; it is not known of what.
 
+use chacha20::ChaCha8Rng;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 /// Words at the ends of what can be read, and what texts of both kinds are made of.
 const TOKENS: [&str; 62] = [

@@ -1,7 +1,7 @@
 //! Changes to a model file as TOML: what comes out has no error of syntax.
 
+use chacha20::ChaCha8Rng;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use toml::Value;
 
 #[expect(clippy::approx_constant, reason = "people write it so")]

@@ -8,9 +8,9 @@
 
 pub mod whole_numbers;
 
+use chacha20::ChaCha8Rng;
 use nalgebra::{DMatrix, DVector, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
 

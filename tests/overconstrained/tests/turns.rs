@@ -2,6 +2,7 @@
 //! as the screws of their joints are.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
+use chacha20::ChaCha8Rng;
 use gyro_assembled::Dense;
 use gyro_codegen::{Effort, Functions};
 use gyro_jit::Compiled;
@@ -16,7 +17,6 @@ use gyro_sim::{
 use gyro_verifier::{Depth, verify};
 use nalgebra::{Quaternion, UnitQuaternion};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
 /// Of the runs.

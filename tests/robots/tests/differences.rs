@@ -5,6 +5,7 @@
 
 mod support;
 
+use chacha20::ChaCha8Rng;
 use gyro_robots::crane::Crane;
 use gyro_robots::legged::Legged;
 use gyro_robots::manipulator::Manipulator;
@@ -12,7 +13,6 @@ use gyro_sim::{
     DynamicsDerivatives, InverseDynamics, JointJacobian, JointPlace, JointSpace, ParameterJacobian, Scalar,
 };
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use support::Fine;
 
 const STATES: usize = 8;

@@ -2,6 +2,7 @@
 //! against virtual power with the dense runtime-assembled model, against energies, and against each other.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
+use chacha20::ChaCha8Rng;
 use gyro_assembled::Dense;
 use gyro_model::{Model, Number, to_f64};
 use gyro_robots::legged::Legged;
@@ -9,7 +10,6 @@ use gyro_robots::manipulator::Manipulator;
 use gyro_sim::{InverseDynamics, JointPlace, JointSpace, MassMatrix, Mechanism, Regressor};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 
 const STATES: usize = 50;

@@ -25,6 +25,48 @@ impl Modules {
     }
 }
 
+/// Which files and folders right under a crate's `src` use which, also by names that the root has from them.
+pub fn stages(source: &Path) -> BTreeMap<String, BTreeSet<String>> {
+    let mut files = BTreeMap::new();
+    read(source, "", &mut files);
+    let first = |module: &str| module.split("::").next().unwrap_or(module).to_owned();
+    let tops: BTreeSet<String> = files.keys().map(|module| first(module)).collect();
+    let root = fs::read_to_string(source.join("lib.rs")).expect("a root");
+    let mut of_root = Vec::new();
+    for item in syn::parse_file(&root).expect("Rust").items {
+        if let Item::Use(item) = item {
+            collect(&item.tree, &mut Vec::new(), &mut of_root);
+        }
+    }
+    let from: BTreeMap<String, String> = of_root
+        .iter()
+        .map(|path| if path[0] == "self" { &path[1..] } else { &path[..] })
+        .filter(|path| tops.contains(&path[0]))
+        .map(|path| (path[path.len() - 1].clone(), path[0].clone()))
+        .collect();
+    let mut found: BTreeMap<String, BTreeSet<String>> =
+        tops.iter().map(|top| (top.clone(), BTreeSet::new())).collect();
+    for (module, file) in &files {
+        let (top, mut paths) = (first(module), Paths::default());
+        paths.visit_file(file);
+        let named = paths.found.iter().filter_map(|path| in_root(module, path));
+        let stage = |name: String| from.get(&name).cloned().or_else(|| tops.get(&name).cloned());
+        let others = named.filter_map(stage).filter(|stage| *stage != top);
+        found.entry(top.clone()).or_default().extend(others.collect::<Vec<_>>());
+    }
+    found
+}
+
+/// The name that a path has in the root of its crate.
+fn in_root(module: &str, path: &[String]) -> Option<String> {
+    let above = path.iter().take_while(|name| *name == "super").count();
+    match path.first()?.as_str() {
+        "crate" => path.get(1).cloned(),
+        "super" if above == module.split("::").count() => path.get(above).cloned(),
+        _ => None,
+    }
+}
+
 fn read(folder: &Path, path: &str, files: &mut BTreeMap<String, syn::File>) {
     let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
     for entry in entries.map(|entry| entry.expect("an entry").path()) {

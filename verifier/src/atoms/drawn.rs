@@ -2,8 +2,8 @@
 
 use super::Atoms;
 use crate::field::{Field, Modular, Prime};
+use chacha20::ChaCha8Rng;
 use gyro_model::Spline;
-use rand_chacha::ChaCha8Rng;
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::hash::Hash;

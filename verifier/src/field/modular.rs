@@ -134,9 +134,9 @@ impl<'p, const L: usize> Field for Modular<'p, L> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use chacha20::ChaCha8Rng;
     use num_traits::{One, ToPrimitive};
     use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
 
     /// Compares every operation with the same one of integers of any size.
     fn check<const L: usize>(prime: &Prime<L>) {

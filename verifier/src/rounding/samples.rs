@@ -1,9 +1,9 @@
 //! The states at which rounding is measured.
 
 use crate::module::Module;
+use chacha20::ChaCha8Rng;
 use gyro_model::Model;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::fmt;
 use std::ops::Range;
 

@@ -1,5 +1,6 @@
 //! The interpreter over `f64` computes what the compiler makes of the same text, bit by bit.
 
+use chacha20::ChaCha8Rng;
 use gyro_mechanisms::{four_bar::FourBar, torsion::Torsion};
 use gyro_sim::{CorrectedSolution, Dynamics, JointJacobian, Kinematics, Partition, Projection};
 use gyro_verifier::atoms::Elementary;
@@ -7,7 +8,6 @@ use gyro_verifier::interpreter::{Given, constants, run};
 use gyro_verifier::module::{Module, source_of_accelerations};
 use gyro_verifier::point::Point;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 
 const STATES: usize = 20;

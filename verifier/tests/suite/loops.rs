@@ -4,6 +4,7 @@
 use crate::faults::{Fault, apply, faults};
 use crate::layouts::{places, stated};
 use crate::support::{Page, generate_text, page};
+use chacha20::ChaCha8Rng;
 use gyro_model::RowOwner;
 use gyro_verifier::field::Constant;
 use gyro_verifier::joints::{Freedom, JointLayout};
@@ -11,7 +12,6 @@ use gyro_verifier::module::Module;
 use gyro_verifier::program::{Id, Node, Program, Source};
 use gyro_verifier::proof::{Claim, Decider, Statements, Verdict};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 const SEED: u64 = 23;
 

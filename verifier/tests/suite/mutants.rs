@@ -5,12 +5,12 @@
 
 use crate::faults::{Fault, apply, faults};
 use crate::support::Page;
+use chacha20::ChaCha8Rng;
 use gyro_verifier::field::Prime;
 use gyro_verifier::module::Module;
 use gyro_verifier::proof::{Claim, Decider, Verdict, prime};
 use gyro_verifier::{Depth, verify};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 
 /// Model files whose modules are mutated, and how many mutants of each are tried.

@@ -1,6 +1,7 @@
 //! Exported C computes the bits of the Rust that it was written from: functions at random states, and trajectories.
 
 use crate::target::{Program, Target};
+use chacha20::ChaCha8Rng;
 use gyro_c_tests as modules;
 use gyro_export::Precision;
 use gyro_sim::integrate::Method;
@@ -9,7 +10,6 @@ use gyro_sim::{
     Kutta4, Mechanism, Real, Rodas4, Solver, Tsit5,
 };
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::io::Write;
 use std::process::Stdio;
 

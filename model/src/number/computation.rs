@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use num_traits::{One, Zero};
 
-use crate::{Number, Rational};
+use super::{Number, Rational};
 
 /// An operation on numbers of which at least one is a parameter, or computed from one.
 #[derive(Clone, Debug, PartialEq, Eq)]
