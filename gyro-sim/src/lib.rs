@@ -109,7 +109,7 @@ pub mod contact;
 mod contract;
 pub mod correct;
 mod dual;
-mod error;
+mod euler_parameters;
 pub mod events;
 pub mod fused;
 #[cfg(feature = "generated")]
@@ -132,9 +132,9 @@ mod wire;
 pub use apart::apart;
 pub use contract::{
     Buffers, Clearance, Coordinate, Corrected, CorrectedDynamics, CorrectedSolution, Description, Dynamics,
-    DynamicsDerivatives, Energy, Exact, FrameBuffers, Frames, InverseDynamics, Jacobian, JacobianBuffers,
-    Joint, JointBuffers, JointInfo, JointJacobian, JointLayout, JointOutputs, JointPlace, JointSpace,
-    Kinematics, MassMatrix, Mechanism, Ode, OutputDerivatives, OutputInfo, OutputSlopes, Owner,
+    DynamicsDerivatives, Energy, Error, Exact, FrameBuffers, Frames, InverseDynamics, Jacobian,
+    JacobianBuffers, Joint, JointBuffers, JointInfo, JointJacobian, JointLayout, JointOutputs, JointPlace,
+    JointSpace, Kinematics, MassMatrix, Mechanism, Ode, OutputDerivatives, OutputInfo, OutputSlopes, Owner,
     ParameterJacobian, Partition, Projection, Regressor, RowInfo, System, Terms, set_turn_references,
 };
 pub use correct::{
@@ -142,7 +142,6 @@ pub use correct::{
     Uncorrected, Watched, When,
 };
 pub use dual::{ByDuals, Dual};
-pub use error::Error;
 pub use integrate::{Dop853, Kutta4, Rk4, Rodas4, Tsit5};
 pub use scalar::{Lanes, Real, Scalar};
 pub use solver::{Control, Passage, Solver, Statistics};

@@ -2,6 +2,11 @@
 
 use crate::{Mechanism, Owner, Real, RowInfo};
 
+/// The positions count as corrected when no row exceeds this many roundings: of one, or of the largest coordinate in
+/// units of the mechanism's size, because a point row is a difference of positions. Where that is not enough, each row
+/// is judged by what it subtracts: see [`Partition::is_met`](crate::Partition::is_met).
+pub(crate) const CONVERGED_EPSILONS: f64 = 16.0;
+
 /// The worst violated row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Violation<T> {

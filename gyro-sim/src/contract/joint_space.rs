@@ -2,7 +2,7 @@
 
 use super::{Mechanism, Storage};
 use crate::Scalar;
-use crate::correct::normalise;
+use crate::euler_parameters::normalise;
 #[cfg(feature = "wire")]
 use crate::wire::*;
 

@@ -5,6 +5,7 @@
 
 mod description;
 mod dynamics;
+mod error;
 mod joint_space;
 mod kinematics;
 mod mechanism;
@@ -15,6 +16,7 @@ mod robot;
 
 pub use description::{Coordinate, Description, JointInfo, OutputInfo, Owner, RowInfo};
 pub use dynamics::{CorrectedDynamics, CorrectedSolution, Dynamics, Projection};
+pub use error::Error;
 pub use joint_space::{
     JacobianBuffers, JointBuffers, JointJacobian, JointLayout, JointPlace, JointSpace, ParameterJacobian,
 };

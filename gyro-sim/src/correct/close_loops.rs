@@ -1,7 +1,8 @@
 //! The correction of loops in joint coordinates.
 
-use super::{CONVERGED_EPSILONS, Correction, FARTHEST, MAX_ITERATIONS, check_finite, reach};
+use super::{Correction, FARTHEST, MAX_ITERATIONS, check_finite, reach};
 use crate::pivoting::is_resolvable;
+use crate::violation::CONVERGED_EPSILONS;
 use crate::violation::{Violation, closure_violation};
 use crate::{
     ByDuals, Clearance, Coordinate, Error, Joint, JointLayout, JointPlace, JointSpace, Mechanism, Ode, Owner,

@@ -1,7 +1,9 @@
 //! Projection onto the constraints in the metric of the masses.
 
-use super::{CONVERGED_EPSILONS, Correction, FARTHEST, MAX_ITERATIONS, check_finite, normalise, reach};
+use super::{Correction, FARTHEST, MAX_ITERATIONS, check_finite, reach};
+use crate::euler_parameters::normalise;
 use crate::pivoting::{self, is_met, silence};
+use crate::violation::CONVERGED_EPSILONS;
 use crate::violation::{Violation, constraint_violation, violation};
 use crate::{
     ByDuals, Clearance, Dynamics, Error, Exact, Kinematics, Mechanism, Ode, Owner, Partition, Projection,

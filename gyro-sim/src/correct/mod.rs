@@ -116,11 +116,6 @@ impl Default for When {
 /// not.
 pub(crate) const MAX_ITERATIONS: u32 = 10;
 
-/// The positions count as corrected when no row exceeds this many roundings: of one, or of the largest coordinate in
-/// units of the mechanism's size, because a point row is a difference of positions. Where that is not enough, each row
-/// is judged by what it subtracts: see [`Partition::is_met`](crate::Partition::is_met).
-pub(crate) const CONVERGED_EPSILONS: f64 = 16.0;
-
 /// A change of more than this many radians, or lengths in units of the mechanism's size, leads to another pose and is
 /// refused.
 pub(crate) const FARTHEST: f64 = 0.5;
@@ -129,13 +124,6 @@ pub(crate) const FARTHEST: f64 = 0.5;
 pub(crate) fn reach<M: Mechanism<Scalar: Lanes>>(mechanism: &M, y: &M::State) -> M::Scalar {
     let bodies = y.as_ref().chunks_exact(7).take(mechanism.description().bodies.len());
     largest_magnitude(bodies.flat_map(|body| body.iter().take(3)).copied()) / mechanism.size()
-}
-
-/// Makes a unit vector of Euler parameters.
-pub(crate) fn normalise<T: Scalar>(p: &mut [T]) {
-    let square = p.iter().fold(T::constant(0.0), |sum, e| T::fused(*e, *e, sum));
-    let scale = T::constant(1.0) / square.sqrt();
-    p.iter_mut().for_each(|e| *e = *e * scale);
 }
 
 /// Refuses start and end times that are not finite: equations that do not depend on time would not reveal them.

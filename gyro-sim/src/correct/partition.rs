@@ -1,7 +1,8 @@
 //! The paper's two algorithms: direct integration and coordinate partitioning.
 
-use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, check_finite, check_time, reach};
+use super::{Correction, MAX_ITERATIONS, check_finite, check_time, reach};
 use crate::contract::Storage;
+use crate::violation::CONVERGED_EPSILONS;
 use crate::violation::{Violation, constraint_violation};
 use crate::{
     Clearance, Corrected, CorrectedDynamics, Error, Ode, Owner, Partition, Real, Rk4, Scalar, refer_turns,

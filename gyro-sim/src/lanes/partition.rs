@@ -3,8 +3,9 @@
 
 use super::{Failures, are_finite, keep};
 use crate::contract::Storage;
-use crate::correct::{CONVERGED_EPSILONS, MAX_ITERATIONS, reach};
+use crate::correct::{MAX_ITERATIONS, reach};
 use crate::scalar::larger;
+use crate::violation::CONVERGED_EPSILONS;
 use crate::violation::constraint_violation;
 use crate::{
     Corrected, CorrectedDynamics, Error, Lanes, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar,

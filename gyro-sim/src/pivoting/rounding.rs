@@ -4,7 +4,7 @@
 //! A gear's row subtracts angles that grow with every turn, a rod's row positions that may be far from the origin, a
 //! row with a large ratio what it multiplies. Each row is judged by its own terms.
 
-use crate::correct::CONVERGED_EPSILONS;
+use crate::violation::CONVERGED_EPSILONS;
 use crate::{Kinematics, Real, Scalar};
 use core::f64::consts::TAU;
 

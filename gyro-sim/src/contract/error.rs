@@ -1,6 +1,6 @@
 //! Errors of a run.
 
-use crate::Owner;
+use super::Owner;
 use core::fmt;
 
 /// A failure of a run, with the time and the number that failed. The run stops there.
