@@ -99,7 +99,7 @@ fn method(names: &Names, call: &ExprMethodCall) -> Result<(String, Binding), Err
     for argument in &call.args {
         arguments.push(value(names, argument)?);
     }
-    let Some(function) = names.precision.function(&name).filter(|_| arguments.len() <= 2) else {
+    let Some(function) = names.precision.function(&name, arguments.len()) else {
         return Err(Error::unknown("a function", call));
     };
     Ok((format!("{function}({})", arguments.join(", ")), Binding::Call))

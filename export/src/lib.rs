@@ -16,6 +16,7 @@ mod text;
 pub mod wasm;
 
 use gyro_model::Model;
+use gyro_program::elementary::Function;
 use quote::ToTokens;
 use std::fmt;
 
@@ -45,21 +46,10 @@ impl Precision {
         }
     }
 
-    /// An elementary function by its name in Rust.
-    fn function(self, name: &str) -> Option<&'static str> {
-        Some(match (self, name) {
-            (Self::F64, "sqrt") => "sqrt",
-            (Self::F64, "sin") => "libm_sin",
-            (Self::F64, "cos") => "libm_cos",
-            (Self::F64, "tanh") => "libm_tanh",
-            (Self::F64, "atan2") => "libm_atan2",
-            (Self::F32, "sqrt") => "sqrtf",
-            (Self::F32, "sin") => "gyro_sinf",
-            (Self::F32, "cos") => "gyro_cosf",
-            (Self::F32, "tanh") => "libm_tanhf",
-            (Self::F32, "atan2") => "libm_atan2f",
-            _ => return None,
-        })
+    /// An elementary function by its name in Rust and the number of its operands.
+    fn function(self, name: &str, arity: usize) -> Option<&'static str> {
+        let function = Function::named(name).filter(|function| function.arity() == arity)?;
+        Some(function.signature().in_c[self as usize])
     }
 }
 

@@ -1,7 +1,7 @@
 //! Dual numbers: automatic differentiation, accurate to rounding.
 
 use crate::contract::Storage;
-use crate::{Jacobian, Ode, Scalar};
+use crate::{Elementary, Jacobian, Ode, Scalar};
 use core::marker::PhantomData;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -77,24 +77,13 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
     fn constant(value: f64) -> Self {
         Self::new(T::constant(value))
     }
-    fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        self.chain(root, T::constant(0.5) / root)
-    }
-    fn sin(self) -> Self {
-        self.chain(self.value.sin(), self.value.cos())
-    }
-    fn cos(self) -> Self {
-        self.chain(self.value.cos(), -self.value.sin())
-    }
-    fn tanh(self) -> Self {
-        let value = self.value.tanh();
-        self.chain(value, T::constant(1.0) - value * value)
-    }
-    fn atan2(self, x: Self) -> Self {
-        let square = self.value * self.value + x.value * x.value;
-        let (dy, dx) = (x.value / square, -self.value / square);
-        self.with(x, self.value.atan2(x.value), |a, b| dy * a + dx * b)
+    fn call(function: Elementary, operands: [Self; 2]) -> Self {
+        let ([x, y], given) = (operands, operands.map(|operand| operand.value));
+        let value = T::call(function, given);
+        match function.slopes(given, value) {
+            (by_x, None) => x.chain(value, by_x),
+            (by_x, Some(by_y)) => x.with(y, value, |dx, dy| by_x * dx + by_y * dy),
+        }
     }
     /// The third derivative of a table's curve is a step function; at a knot it is that of the piece that begins there,
     /// as a step that begins there needs it.

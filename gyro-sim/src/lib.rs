@@ -143,7 +143,7 @@ pub use correct::{
 };
 pub use dual::{ByDuals, Dual};
 pub use integrate::{Dop853, Kutta4, Rk4, Rodas4, Tsit5};
-pub use scalar::{Lanes, Real, Scalar};
+pub use scalar::{Elementary, Lanes, Real, Scalar};
 pub use solver::{Control, Passage, Solver, Statistics};
 pub use turns::{JointCoordinate, Turns, keep_turns, refer_turns};
 pub use violation::{Violation, violation};

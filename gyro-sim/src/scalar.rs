@@ -24,21 +24,9 @@ pub trait Scalar:
     fn fused(a: Self, b: Self, c: Self) -> Self {
         a * b + c
     }
-    /// Square root.
+    /// An elementary function of these operands; of one operand both are the same.
     #[must_use]
-    fn sqrt(self) -> Self;
-    /// Sine.
-    #[must_use]
-    fn sin(self) -> Self;
-    /// Cosine.
-    #[must_use]
-    fn cos(self) -> Self;
-    /// Hyperbolic tangent.
-    #[must_use]
-    fn tanh(self) -> Self;
-    /// The angle of the point `(x, self)`, in `(−π, π]`.
-    #[must_use]
-    fn atan2(self, x: Self) -> Self;
+    fn call(function: Elementary, operands: [Self; 2]) -> Self;
     /// Value, first and second derivative of a table's smooth curve at this time: see [`spline`](mod@crate::spline).
     /// Lanes of a pack may lie in different pieces.
     #[must_use]
@@ -46,6 +34,70 @@ pub trait Scalar:
     /// The third derivative of the same curve; at a knot that of the piece which begins there.
     #[must_use]
     fn spline_third(self, knots: &[f64], pieces: &[[f64; 4]]) -> Self;
+
+    /// Square root.
+    #[inline(always)]
+    #[must_use]
+    fn sqrt(self) -> Self {
+        Self::call(Elementary::Sqrt, [self; 2])
+    }
+    /// Sine.
+    #[inline(always)]
+    #[must_use]
+    fn sin(self) -> Self {
+        Self::call(Elementary::Sin, [self; 2])
+    }
+    /// Cosine.
+    #[inline(always)]
+    #[must_use]
+    fn cos(self) -> Self {
+        Self::call(Elementary::Cos, [self; 2])
+    }
+    /// Hyperbolic tangent.
+    #[inline(always)]
+    #[must_use]
+    fn tanh(self) -> Self {
+        Self::call(Elementary::Tanh, [self; 2])
+    }
+    /// The angle of the point `(x, self)`, in `(−π, π]`.
+    #[inline(always)]
+    #[must_use]
+    fn atan2(self, x: Self) -> Self {
+        Self::call(Elementary::Atan2, [self, x])
+    }
+}
+
+/// An elementary function, for number types that treat most of them alike. There will be more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Elementary {
+    /// Square root.
+    Sqrt,
+    /// Sine.
+    Sin,
+    /// Cosine.
+    Cos,
+    /// Hyperbolic tangent.
+    Tanh,
+    /// The angle of the point (second operand, first operand).
+    Atan2,
+}
+
+impl Elementary {
+    /// The derivatives by the operands, the second one of functions of two, where the function has this value.
+    #[inline(always)]
+    pub(crate) fn slopes<T: Scalar>(self, [x, y]: [T; 2], value: T) -> (T, Option<T>) {
+        match self {
+            Self::Sqrt => (T::constant(0.5) / value, None),
+            Self::Sin => (x.cos(), None),
+            Self::Cos => (-x.sin(), None),
+            Self::Tanh => (T::constant(1.0) - value * value, None),
+            Self::Atan2 => {
+                let square = x * x + y * y;
+                (y / square, Some(-x / square))
+            }
+        }
+    }
 }
 
 /// A scalar that can be compared, as solvers need it.
@@ -184,25 +236,15 @@ impl Scalar for f64 {
     fn fused(a: Self, b: Self, c: Self) -> Self {
         fused::double(a, b, c)
     }
-    #[inline]
-    fn sqrt(self) -> Self {
-        libm::sqrt(self)
-    }
-    #[inline]
-    fn sin(self) -> Self {
-        libm::sin(self)
-    }
-    #[inline]
-    fn cos(self) -> Self {
-        libm::cos(self)
-    }
-    #[inline]
-    fn tanh(self) -> Self {
-        libm::tanh(self)
-    }
-    #[inline]
-    fn atan2(self, x: Self) -> Self {
-        libm::atan2(self, x)
+    #[inline(always)]
+    fn call(function: Elementary, [x, y]: [Self; 2]) -> Self {
+        match function {
+            Elementary::Sqrt => libm::sqrt(x),
+            Elementary::Sin => libm::sin(x),
+            Elementary::Cos => libm::cos(x),
+            Elementary::Tanh => libm::tanh(x),
+            Elementary::Atan2 => libm::atan2(x, y),
+        }
     }
     #[inline]
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
@@ -244,25 +286,15 @@ impl Scalar for f32 {
     fn fused(a: Self, b: Self, c: Self) -> Self {
         fused::single(a, b, c)
     }
-    #[inline]
-    fn sqrt(self) -> Self {
-        libm::sqrtf(self)
-    }
-    #[inline]
-    fn sin(self) -> Self {
-        if Real::abs(self) <= sine::LARGEST as Self { sine::sin(self) } else { libm::sinf(self) }
-    }
-    #[inline]
-    fn cos(self) -> Self {
-        if Real::abs(self) <= sine::LARGEST as Self { sine::cos(self) } else { libm::cosf(self) }
-    }
-    #[inline]
-    fn tanh(self) -> Self {
-        libm::tanhf(self)
-    }
-    #[inline]
-    fn atan2(self, x: Self) -> Self {
-        libm::atan2f(self, x)
+    #[inline(always)]
+    fn call(function: Elementary, [x, y]: [Self; 2]) -> Self {
+        match function {
+            Elementary::Sqrt => libm::sqrtf(x),
+            Elementary::Sin => sine::sin_of_any(x),
+            Elementary::Cos => sine::cos_of_any(x),
+            Elementary::Tanh => libm::tanhf(x),
+            Elementary::Atan2 => libm::atan2f(x, y),
+        }
     }
     #[inline]
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {

@@ -15,14 +15,16 @@ use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::FunctionBuilder;
 use gyro_codegen::tape::{At, Direction, Loop, Operation, Place, Tape};
 use gyro_codegen::{ScheduledKernel, Variable};
+use gyro_program::elementary::Function;
 use gyro_sim::fused::IS_FUSED;
 
 /// The arrays that a function is given, in the order of its arguments after the time.
 pub(crate) const ARRAYS: [Array; 6] =
     [Array::State, Array::Given, Array::Own, Array::Tables, Array::Work, Array::Out];
 
-/// The elementary functions that are called, in the order of [`Writer::functions`].
-pub(crate) const FUNCTIONS: [&str; 5] = ["sin", "cos", "tanh", "atan2", "sin_cos"];
+/// How many functions may be called: the elementary ones by their places, and sine with cosine.
+pub(crate) const N_FUNCTIONS: usize = SIN_COS + 1;
+pub(crate) const SIN_COS: usize = Function::ALL.len();
 
 /// A number type of machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,18 +57,15 @@ impl Width {
         signature
     }
 
-    /// Signature of an elementary function.
-    pub(crate) fn of_function(self, call_conv: CallConv, pointer: Type, name: &str) -> Signature {
+    /// Signature of a function that is called.
+    pub(crate) fn of_function(self, call_conv: CallConv, pointer: Type, number: usize) -> Signature {
         let mut signature = Signature::new(call_conv);
         if self == Self::Pair {
             signature.params.push(AbiParam::new(pointer));
             return signature;
         }
-        let [n_arguments, n_results] = match name {
-            "atan2" => [2, 1],
-            "sin_cos" => [1, 2],
-            _ => [1, 1],
-        };
+        let [n_arguments, n_results] =
+            Function::ALL.get(number).map_or([1, 2], |function| [function.arity(), 1]);
         signature.params.extend((0..n_arguments).map(|_| AbiParam::new(self.ty())));
         signature.returns.extend((0..n_results).map(|_| AbiParam::new(self.ty())));
         signature
@@ -93,7 +92,7 @@ pub(crate) struct Writer<'w, 'f> {
     pub(crate) shape: &'w Shape,
     /// Where the tables of each loop begin.
     pub(crate) tables: &'w [usize],
-    pub(crate) functions: [FuncRef; 5],
+    pub(crate) functions: [FuncRef; N_FUNCTIONS],
     pub(crate) pointer: Type,
     /// How much of each array is read or written.
     pub(crate) reach: [usize; 6],
@@ -255,11 +254,13 @@ impl Writer<'_, '_> {
             Operation::Negate(a) => self.builder.ins().fneg(at(a)),
             Operation::Fused(a, b, c) if IS_FUSED => self.builder.ins().fma(at(a), at(b), at(c)),
             Operation::Fused(a, b, c) => self.rounded_twice(tape, [*a, *b, *c], values),
-            Operation::Sqrt(a) => self.builder.ins().sqrt(at(a)),
-            Operation::Sin(a) => self.sine_or_cosine(tape, (*a, 0), at(a)),
-            Operation::Cos(a) => self.sine_or_cosine(tape, (*a, 1), at(a)),
-            Operation::Tanh(a) => self.call(2, &[at(a)])[0],
-            Operation::Atan2(y, x) => self.call(3, &[at(y), at(x)])[0],
+            Operation::Call(Function::Sqrt, [a, _]) => self.builder.ins().sqrt(at(a)),
+            Operation::Call(Function::Sin, [a, _]) => self.sine_or_cosine(tape, (*a, Function::Sin), at(a)),
+            Operation::Call(Function::Cos, [a, _]) => self.sine_or_cosine(tape, (*a, Function::Cos), at(a)),
+            Operation::Call(function, operands) => {
+                let operands = operands.map(|place| at(&place));
+                self.call(*function as usize, &operands[..function.arity()])[0]
+            }
         }
     }
 
@@ -302,21 +303,24 @@ impl Writer<'_, '_> {
     fn sine_or_cosine(
         &mut self,
         tape: &Tape<Variable, f64>,
-        (angle, which): (Place, usize),
+        (angle, function): (Place, Function),
         value: Value,
     ) -> Value {
+        let (which, other) = match function {
+            Function::Sin => (0, Function::Cos),
+            _ => (1, Function::Sin),
+        };
         let is_other = |operation: &Operation<Variable, f64>| match *operation {
-            Operation::Sin(of) => which == 1 && is_same(tape, of, angle),
-            Operation::Cos(of) => which == 0 && is_same(tape, of, angle),
+            Operation::Call(called, [of, _]) => called == other && is_same(tape, of, angle),
             _ => false,
         };
         if !self.width.takes_both() || !tape.operations.iter().any(is_other) {
-            return self.call(which, &[value])[0];
+            return self.call(function as usize, &[value])[0];
         }
         if let Some((_, both)) = self.turns.iter().find(|(of, _)| is_same(tape, *of, angle)) {
             return both[which];
         }
-        let both = self.call(4, &[value]);
+        let both = self.call(SIN_COS, &[value]);
         self.turns.push((angle, both));
         both[which]
     }
@@ -350,7 +354,7 @@ impl Writer<'_, '_> {
         let mut result =
             |n| self.builder.ins().stack_load(self.pointer, self.width.ty(), slot, self.width.bytes(n));
         let first = result(0);
-        if FUNCTIONS[function] == "sin_cos" { [first, result(1)] } else { [first, first] }
+        if function == SIN_COS { [first, result(1)] } else { [first, first] }
     }
 
     /// Stores a row of an array for a part, whose number this is of so many.

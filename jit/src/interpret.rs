@@ -3,6 +3,7 @@
 use crate::engine::{
     Arguments, Array, Engine, Input, Layout, NotCompiled, Shape, reads_curves, write_curves,
 };
+use crate::native::call;
 use gyro_codegen::tape::{At, Direction, Loop, Operation, Place, Tape};
 use gyro_codegen::{Kernel, Scheduled, Variable};
 use gyro_sim::Scalar;
@@ -141,11 +142,7 @@ impl<T: Scalar> Run<'_, T> {
                 Operation::Divide(a, b) => at(a) / at(b),
                 Operation::Negate(a) => -at(a),
                 Operation::Fused(a, b, c) => T::fused(at(a), at(b), at(c)),
-                Operation::Sqrt(a) => at(a).sqrt(),
-                Operation::Sin(a) => at(a).sin(),
-                Operation::Cos(a) => at(a).cos(),
-                Operation::Tanh(a) => at(a).tanh(),
-                Operation::Atan2(y, x) => at(y).atan2(at(x)),
+                Operation::Call(function, operands) => call(*function, operands.map(|place| at(&place))),
             };
             numbers.push(value);
         }

@@ -1,7 +1,7 @@
 //! Kernels as machine code: what Cranelift makes of them, and the engine that has it.
 
 use crate::calls::{Code, Finished, Function};
-use crate::clif::{FUNCTIONS, Width, Writer};
+use crate::clif::{N_FUNCTIONS, Width, Writer};
 use crate::engine::{Arguments, Engine, Input, Layout, NotCompiled, Shape, reads_curves, write_curves};
 use crate::native::Native;
 use cranelift_codegen::Context;
@@ -10,6 +10,7 @@ use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{FuncId, Linkage, Module, ModuleError};
 use gyro_codegen::{Kernel, Scheduled};
+use gyro_program::elementary::Function as Elementary;
 use std::cell::RefCell;
 use std::fmt;
 use std::sync::Arc;
@@ -48,8 +49,8 @@ impl<T: Native> MachineCode<T> {
         mut told: Option<&mut dyn FnMut(Input<'_>)>,
     ) -> Result<Self, NotCompiled> {
         let mut builder = JITBuilder::with_flags(&FLAGS, cranelift_module::default_libcall_names())?;
-        for (name, address) in FUNCTIONS.iter().zip(T::functions()) {
-            builder.symbol(symbol(name), address);
+        for (number, address) in T::functions().into_iter().enumerate() {
+            builder.symbol(symbol(number), address);
         }
         let mut compiler = Compiler::new(JITModule::new(builder), T::BITS, layout)?;
         let kernels = scheduled.kernels.keys();
@@ -103,9 +104,9 @@ impl<T: Native> MachineCode<T> {
     }
 }
 
-/// The name under which an elementary function is found: not that of the C library's.
-fn symbol(name: &str) -> String {
-    format!("gyro_{name}")
+/// The name under which a function is found that is called: not that of the C library's.
+fn symbol(number: usize) -> String {
+    format!("gyro_{}", Elementary::ALL.get(number).map_or("sin_cos", |function| function.name()))
 }
 
 /// Compiles one kernel after the other.
@@ -114,7 +115,7 @@ struct Compiler {
     width: Width,
     layout: Layout,
     context: Context,
-    functions: [FuncId; 5],
+    functions: [FuncId; N_FUNCTIONS],
     tables: Vec<f64>,
 }
 
@@ -126,12 +127,11 @@ impl Compiler {
             _ => Width::Pair,
         };
         let target = module.target_config();
-        let mut declare = |name: &str| {
-            let signature = width.of_function(target.default_call_conv, target.pointer_type(), name);
-            module.declare_function(&symbol(name), Linkage::Import, &signature).map_err(NotCompiled::from)
-        };
-        let [a, b, c, d, e] = FUNCTIONS.map(&mut declare);
-        let functions = [a?, b?, c?, d?, e?];
+        let mut functions = [FuncId::from_u32(0); N_FUNCTIONS];
+        for (number, id) in functions.iter_mut().enumerate() {
+            let signature = width.of_function(target.default_call_conv, target.pointer_type(), number);
+            *id = module.declare_function(&symbol(number), Linkage::Import, &signature)?;
+        }
         let context = module.make_context();
         Ok(Self { module, width, layout, context, functions, tables: Vec::new() })
     }

@@ -1,5 +1,6 @@
 //! The number types that there is machine code for, and the elementary functions that it calls.
 
+use gyro_program::elementary::Function;
 use gyro_sim::Scalar;
 use gyro_sim::lanes::f64x2;
 
@@ -11,27 +12,45 @@ pub trait Native: Scalar + Send + Sync + 'static {
     type Time;
     /// The time as it is passed.
     fn time(&self) -> Self::Time;
-    /// The addresses of sine, cosine, hyperbolic tangent, angle, and sine with cosine, in the order of
-    /// `clif::FUNCTIONS`, as a module that rustc compiles calls them. The last one only where it is called.
+    /// The addresses of the elementary functions in their order, as a module that rustc compiles calls them, and where
+    /// it is called that of sine with cosine.
     fn functions() -> Vec<*const u8>;
 }
 
-// They do not unwind. Being allowed to, they are one jump to the function itself.
+/// What is called for each elementary function.
+macro_rules! functions {
+    ([$x:ident, $y:ident] $($function:ident: $method:ident($($operand:ident),+),)+) => {
+        /// The value of an elementary function; of one operand the second one is of no matter.
+        pub(crate) fn call<T: Scalar>(function: Function, [$x, $y]: [T; 2]) -> T {
+            match function { $(Function::$function => Scalar::$method($($operand),+)),+ }
+        }
 
-extern "C-unwind" fn sin<T: Scalar>(x: T) -> T {
-    x.sin()
+        /// The addresses of all functions of single numbers, in their order.
+        fn addresses<T: Scalar>() -> Vec<*const u8> {
+            // They do not unwind. Being allowed to, they are one jump to the function itself.
+            $(extern "C-unwind" fn $method<T: Scalar>($($operand: T),+) -> T { Scalar::$method($($operand),+) })+
+            let address = |function| match function { $(Function::$function => $method::<T> as *const u8),+ };
+            Function::ALL.map(address).to_vec()
+        }
+
+        /// Those of functions of packs, of which the result takes the place of the first.
+        fn addresses_of_packs() -> Vec<*const u8> {
+            $(extern "C" fn $method(packs: &mut [[f64; 2]; 2]) {
+                packs[0] = call(Function::$function, packs.map(f64x2::new)).to_array();
+            })+
+            let address = |function| match function { $(Function::$function => $method as *const u8),+ };
+            Function::ALL.map(address).to_vec()
+        }
+    };
 }
 
-extern "C-unwind" fn cos<T: Scalar>(x: T) -> T {
-    x.cos()
-}
-
-extern "C-unwind" fn tanh<T: Scalar>(x: T) -> T {
-    x.tanh()
-}
-
-extern "C-unwind" fn atan2<T: Scalar>(y: T, x: T) -> T {
-    y.atan2(x)
+functions! {
+    [x, y]
+    Sqrt: sqrt(x),
+    Sin: sin(x),
+    Cos: cos(x),
+    Tanh: tanh(x),
+    Atan2: atan2(x, y),
 }
 
 /// Sine and cosine, which come back in two registers.
@@ -50,18 +69,6 @@ extern "C" fn sin_cos_of_pair(packs: &mut [[f64; 2]; 2]) {
     *packs = [Scalar::sin(x), Scalar::cos(x)].map(f64x2::to_array);
 }
 
-/// Of a pack, and of a second one after it if the function takes two; the result takes the place of the first.
-extern "C" fn of_pair<const FUNCTION: usize>(packs: &mut [[f64; 2]; 2]) {
-    let pack = |n: usize| f64x2::new(packs[n]);
-    let found = match FUNCTION {
-        0 => Scalar::sin(pack(0)),
-        1 => Scalar::cos(pack(0)),
-        2 => Scalar::tanh(pack(0)),
-        _ => Scalar::atan2(pack(0), pack(1)),
-    };
-    packs[0] = found.to_array();
-}
-
 impl Native for f64x2 {
     const BITS: u32 = 128;
     type Time = *const Self;
@@ -69,13 +76,7 @@ impl Native for f64x2 {
         self
     }
     fn functions() -> Vec<*const u8> {
-        vec![
-            of_pair::<0> as *const u8,
-            of_pair::<1> as *const u8,
-            of_pair::<2> as *const u8,
-            of_pair::<3> as *const u8,
-            sin_cos_of_pair as *const u8,
-        ]
+        addresses_of_packs().into_iter().chain([sin_cos_of_pair as *const u8]).collect()
     }
 }
 
@@ -86,13 +87,7 @@ impl Native for f64 {
         *self
     }
     fn functions() -> Vec<*const u8> {
-        vec![
-            sin::<Self> as *const u8,
-            cos::<Self> as *const u8,
-            tanh::<Self> as *const u8,
-            atan2::<Self> as *const u8,
-            sin_cos as *const u8,
-        ]
+        addresses::<Self>().into_iter().chain([sin_cos as *const u8]).collect()
     }
 }
 
@@ -103,12 +98,7 @@ impl Native for f32 {
         *self
     }
     fn functions() -> Vec<*const u8> {
-        vec![
-            sin::<Self> as *const u8,
-            cos::<Self> as *const u8,
-            tanh::<Self> as *const u8,
-            atan2::<Self> as *const u8,
-        ]
+        addresses::<Self>()
     }
 }
 

@@ -44,8 +44,8 @@ const FAULTS: &[Fault] = &[
     fault("expr/differentiate.rs", "bob", "let (left, right) = («graph.mul(self.memo[a], b)»,", "graph.mul(self.memo[a], self.memo[b])"),
     fault("expr/differentiate.rs", "bob", "Node::Add(a, b) => «graph.add(self.memo[a], self.memo[b])»", "self.memo[a]"),
     fault("expr/differentiate.rs", "bob", "Node::Neg(a) => «graph.neg(self.memo[a])»", "self.memo[a]"),
-    fault("expr/differentiate.rs", "chain", "let cos = «graph.cos(a)»;", "graph.sin(a)"),
-    fault("expr/differentiate.rs", "chain", "let product = graph.mul(sin, self.memo[a]);\n                «graph.neg(product)»", "product"),
+    fault("expr/elementary.rs", "chain", "Function::Sin => «graph.cos(a)»,", "graph.sin(a)"),
+    fault("expr/elementary.rs", "chain", "let sin = graph.sin(a);\n            «graph.neg(sin)»", "sin"),
     fault("expr/differentiate.rs", "screw", "let turned = «graph.sub(plus, minus)»;", "graph.add(plus, minus)"),
     fault("expr/differentiate.rs", "screw", "let square = «graph.dot(&[x, y], &[x, y])»;\n    graph.div(turned", "graph.mul(x, x)"),
     fault("expr/differentiate.rs", "cam", "let slope = graph.symbol(Symbol::Table { table, order: «order + 1» });", "order"),
@@ -322,7 +322,7 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/multipliers.rs", "pair", "let relative = if reversed { transposed(&rotation) } else { «rotation» };", "transposed(&rotation)"),
     // The Jacobian of the joint form.
     fault("expr/differentiate.rs", "gyroscope-viscous", "Node::Mul(a, b) => vec![(a, b), «(b, a)»],", "(b, b)"),
-    fault("expr/differentiate.rs", "friction", "vec![(a, «graph.sub(Graph::ONE, square)»)]", "Graph::ONE"),
+    fault("expr/elementary.rs", "friction", "«graph.sub(Graph::ONE, square)»", "Graph::ONE"),
     fault("joint_space/jacobian.rs", "pitching-gyroscope", "*entry = «graph.add(*entry, product)»;", "product"),
     // What controllers of robots ask for.
     fault("joint_space/axis_inverse.rs", "servo", "«segment.applied.plus(graph, &taken)»", "taken"),

@@ -1,7 +1,7 @@
 //! Kernels take any scalar: packs of lanes and dual numbers run the same generated source.
 
 use gyro_mechanisms::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
-use gyro_sim::{Dynamics, Mechanism, Scalar};
+use gyro_sim::{Dynamics, Elementary, Mechanism, Scalar};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Two numbers side by side.
@@ -60,20 +60,8 @@ impl Scalar for Lanes {
     fn constant(value: f64) -> Self {
         Self([value; 2])
     }
-    fn sqrt(self) -> Self {
-        Self(self.0.map(Scalar::sqrt))
-    }
-    fn sin(self) -> Self {
-        Self(self.0.map(Scalar::sin))
-    }
-    fn cos(self) -> Self {
-        Self(self.0.map(Scalar::cos))
-    }
-    fn tanh(self) -> Self {
-        Self(self.0.map(Scalar::tanh))
-    }
-    fn atan2(self, x: Self) -> Self {
-        Self([0, 1].map(|k| self.0[k].atan2(x.0[k])))
+    fn call(function: Elementary, operands: [Self; 2]) -> Self {
+        Self([0, 1].map(|k| f64::call(function, operands.map(|lanes| lanes.0[k]))))
     }
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
         let lanes = self.0.map(|t| t.spline(knots, pieces));
@@ -128,23 +116,19 @@ impl Scalar for Dual {
     fn constant(value: f64) -> Self {
         dual(value, 0.0)
     }
-    fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        dual(root, self.slope / (2.0 * root))
-    }
-    fn sin(self) -> Self {
-        dual(self.value.sin(), self.slope * self.value.cos())
-    }
-    fn cos(self) -> Self {
-        dual(self.value.cos(), -self.slope * self.value.sin())
-    }
-    fn tanh(self) -> Self {
-        let tanh = self.value.tanh();
-        dual(tanh, self.slope * (1.0 - tanh * tanh))
-    }
-    fn atan2(self, x: Self) -> Self {
-        let turned = x.value * self.slope - self.value * x.slope;
-        dual(self.value.atan2(x.value), turned / (self.value * self.value + x.value * x.value))
+    fn call(function: Elementary, [x, y]: [Self; 2]) -> Self {
+        let value = f64::call(function, [x.value, y.value]);
+        match function {
+            Elementary::Sqrt => dual(value, x.slope / (2.0 * value)),
+            Elementary::Sin => dual(value, x.slope * x.value.cos()),
+            Elementary::Cos => dual(value, -x.slope * x.value.sin()),
+            Elementary::Tanh => dual(value, x.slope * (1.0 - value * value)),
+            Elementary::Atan2 => {
+                let turned = y.value * x.slope - x.value * y.slope;
+                dual(value, turned / (x.value * x.value + y.value * y.value))
+            }
+            other => unreachable!("{other:?} is in no scene"),
+        }
     }
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
         // The third derivative is constant between knots.

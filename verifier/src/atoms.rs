@@ -7,9 +7,11 @@ mod formal;
 pub use drawn::Drawn;
 pub(crate) use drawn::HALVINGS;
 pub use elementary::Elementary;
+pub(crate) use elementary::{quotient, range_of_call, rate_of_call, sum};
 pub use formal::Formal;
 
 use crate::field::Field;
+use crate::program::Function;
 use gyro_model::Spline;
 
 /// The functions that emitted code and the textbook may call.
@@ -17,16 +19,28 @@ use gyro_model::Spline;
 /// [`Drawn`] values are random, one for each argument: an identity that holds for all of them holds for the functions.
 /// [`Elementary`] ones are the functions themselves, in floating point. [`Formal`] ones have degrees.
 pub trait Atoms<F: Field> {
-    /// Sine.
-    fn sin(&self, x: &F) -> F;
-    /// Cosine.
-    fn cos(&self, x: &F) -> F;
-    /// Hyperbolic tangent.
-    fn tanh(&self, x: &F) -> F;
-    /// The angle of the point `(x, y)`.
-    fn atan2(&self, y: &F, x: &F) -> F;
-    /// Square root.
-    fn sqrt(&self, x: &F) -> F;
+    /// An elementary function; of one operand both are the same.
+    fn call(&self, function: Function, operands: [&F; 2]) -> F;
     /// Value, first and second derivative of a table's curve.
     fn spline(&self, table: &Spline, t: &F) -> [F; 3];
+    /// Sine.
+    fn sin(&self, x: &F) -> F {
+        self.call(Function::Sin, [x, x])
+    }
+    /// Cosine.
+    fn cos(&self, x: &F) -> F {
+        self.call(Function::Cos, [x, x])
+    }
+    /// Hyperbolic tangent.
+    fn tanh(&self, x: &F) -> F {
+        self.call(Function::Tanh, [x, x])
+    }
+    /// The angle of the point `(x, y)`.
+    fn atan2(&self, y: &F, x: &F) -> F {
+        self.call(Function::Atan2, [y, x])
+    }
+    /// Square root.
+    fn sqrt(&self, x: &F) -> F {
+        self.call(Function::Sqrt, [x, x])
+    }
 }

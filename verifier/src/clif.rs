@@ -32,8 +32,8 @@ pub struct Clif<'a> {
 /// A function that Cranelift compiles has the time and six addresses as arguments: of the state (maximal or joint), of
 /// what is given with it (accelerations, changes of rows, charts), of the mechanism's own numbers (parameters, what
 /// depends on them alone, inputs), of the constants of loops, of work space (curves of tables, three numbers each, then
-/// whatever it keeps there itself) and of its results. It calls `u0:0` to `u0:4`: sine, cosine, hyperbolic tangent, the
-/// angle of a point, and sine with cosine.
+/// whatever it keeps there itself) and of its results. It calls elementary functions by their places among all,
+/// `u0:0` and so on, and sine with cosine as the one after them.
 #[derive(Debug)]
 pub struct Written {
     module: Module,

@@ -1,8 +1,10 @@
 //! What a module divides by: what cannot be zero, and the list of all else.
 
+use crate::atoms::range_of_call;
 use crate::joints::JointLayout;
 use crate::module::{Module, PARAMETER_SETUP};
-use crate::program::{Function, Node, Program, Source};
+use crate::program::{Node, Program, Source};
+use crate::range::Range;
 use gyro_model::{Model, Number};
 
 /// A division.
@@ -40,65 +42,6 @@ pub fn divisors(model: &Model, module: &Module) -> Vec<Divisor> {
     module.written.iter().flat_map(of_function).collect()
 }
 
-/// What a value may be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Range {
-    low: f64,
-    high: f64,
-    is_nonzero: bool,
-}
-
-impl Range {
-    const ANY: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY, is_nonzero: false };
-    const UNIT: Self = Self { low: -1.0, high: 1.0, is_nonzero: false };
-    const POSITIVE: Self = Self { low: 0.0, high: f64::INFINITY, is_nonzero: true };
-
-    /// Bounds that arithmetic gave; infinity less infinity may be anything.
-    fn new(low: f64, high: f64, is_nonzero: bool) -> Self {
-        let low = if low.is_nan() { f64::NEG_INFINITY } else { low };
-        let high = if high.is_nan() { f64::INFINITY } else { high };
-        // Bounds were rounded: what they keep from zero by less is not kept from it.
-        let is_away = |bound: f64| bound > MARGIN;
-        Self { low, high, is_nonzero: is_nonzero || is_away(low) || is_away(-high) }
-    }
-
-    fn add(self, other: Self) -> Self {
-        let one_sided = |a: Self, b: Self| (a.low >= 0.0 && b.low >= 0.0) || (a.high <= 0.0 && b.high <= 0.0);
-        let is_nonzero = one_sided(self, other) && (self.is_nonzero || other.is_nonzero);
-        Self::new(self.low + other.low, self.high + other.high, is_nonzero)
-    }
-
-    fn neg(self) -> Self {
-        Self { low: -self.high, high: -self.low, ..self }
-    }
-
-    fn mul(self, other: Self) -> Self {
-        // Zero times infinity is zero here: bounds are not reached.
-        let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
-        let products = [self.low, self.high].map(|a| [other.low, other.high].map(|b| product(a, b)));
-        let all = products.into_iter().flatten();
-        let (low, high) = (all.clone().fold(f64::INFINITY, f64::min), all.fold(f64::NEG_INFINITY, f64::max));
-        Self { low, high, is_nonzero: self.is_nonzero && other.is_nonzero }
-    }
-
-    fn square(self) -> Self {
-        let square = self.mul(self);
-        let low = if self.low <= 0.0 && self.high >= 0.0 { 0.0 } else { square.low.max(0.0) };
-        Self { low, ..square }
-    }
-
-    fn recip(self) -> Self {
-        match self.is_nonzero {
-            true if self.low >= 0.0 => Self { low: 1.0 / self.high, high: 1.0 / self.low, is_nonzero: true },
-            true if self.high <= 0.0 => self.neg().recip().neg(),
-            is_nonzero => Self { is_nonzero, ..Self::ANY },
-        }
-    }
-}
-
-/// More than the roundings of a bound.
-const MARGIN: f64 = 1e-12;
-
 /// The range of each node.
 fn ranges(module: &Module, program: &Program, given: &dyn Fn(Source) -> Range) -> Vec<Range> {
     let mut ranges: Vec<Range> = Vec::with_capacity(program.nodes.len());
@@ -118,13 +61,8 @@ fn ranges(module: &Module, program: &Program, given: &dyn Fn(Source) -> Range) -
             Node::Mul(a, b) => at(a).mul(at(b)),
             Node::Div(a, b) => at(a).mul(at(b).recip()),
             Node::Neg(a) => at(a).neg(),
-            Node::Call(Function::Sin | Function::Cos | Function::Tanh, _) => Range::UNIT,
-            Node::Call(Function::Sqrt, a) => Range {
-                low: at(a).low.max(0.0).sqrt(),
-                high: at(a).high.max(0.0).sqrt(),
-                is_nonzero: at(a).is_nonzero,
-            },
-            Node::Atan2(..) | Node::Curve { .. } => Range::ANY,
+            Node::Call(function, operands) => range_of_call(function, operands.map(at)),
+            Node::Curve { .. } => Range::ANY,
         };
         ranges.push(range);
     }
@@ -153,23 +91,4 @@ fn is_positive(model: &Model, parameter: usize) -> bool {
         let body = &model.bodies[body];
         is_it(&body.mass) || body.inertia[..3].iter().any(is_it)
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ranges_keep_from_zero_what_cannot_be_zero() {
-        let two = Range { low: 2.0, high: 2.0, is_nonzero: true };
-        assert!(Range::UNIT.square().add(two).is_nonzero);
-        assert!(!Range::UNIT.add(two.neg()).add(Range::UNIT).is_nonzero, "from −4 to 0");
-        assert!(Range::UNIT.add(two).is_nonzero, "from 1 to 3");
-        assert!(!Range::ANY.square().is_nonzero && Range::ANY.square().low == 0.0);
-        assert!(Range::POSITIVE.add(Range::ANY.square()).is_nonzero);
-        assert!(!Range::POSITIVE.add(Range::ANY.square().neg()).is_nonzero);
-        assert!(Range::POSITIVE.mul(two.neg()).is_nonzero && Range::POSITIVE.mul(two.neg()).high <= 0.0);
-        assert_eq!(two.recip(), Range { low: 0.5, high: 0.5, is_nonzero: true });
-        assert!(Range::POSITIVE.recip().low >= 0.0 && !Range::ANY.recip().is_nonzero);
-    }
 }

@@ -4,7 +4,7 @@ use crate::atoms::Atoms;
 use crate::field::Field;
 use crate::module::Module;
 use crate::point::Point;
-use crate::program::{Function, Id, Node, Program, Source};
+use crate::program::{Id, Node, Program, Source};
 use gyro_model::Spline;
 
 /// What a program reads, besides a point.
@@ -97,8 +97,7 @@ pub(crate) fn value<'v, F: Field + 'v>(
         Node::Mul(a, b) => operand(a).mul(operand(b)),
         Node::Div(a, b) => operand(a).div(operand(b))?,
         Node::Neg(a) => operand(a).neg(),
-        Node::Call(function, a) => call(function, operand(a), atoms),
-        Node::Atan2(y, x) => atoms.atan2(operand(y), operand(x)),
+        Node::Call(function, operands) => atoms.call(function, operands.map(operand)),
         Node::Curve { table, order, time } => {
             let [value, first, second] = atoms.spline(&environment.tables[table], operand(time));
             [value, first, second][order].clone()
@@ -121,14 +120,5 @@ fn read<F: Field>(source: Source, given: &Given<F>) -> F {
         Source::Factor(_) | Source::Motion(_) | Source::Before(_) => {
             unreachable!("no module reads what claims vary")
         }
-    }
-}
-
-fn call<F: Field>(function: Function, x: &F, atoms: &dyn Atoms<F>) -> F {
-    match function {
-        Function::Sin => atoms.sin(x),
-        Function::Cos => atoms.cos(x),
-        Function::Tanh => atoms.tanh(x),
-        Function::Sqrt => atoms.sqrt(x),
     }
 }

@@ -57,6 +57,7 @@ pub mod point;
 pub mod program;
 pub mod proof;
 mod prove;
+mod range;
 mod rates;
 pub mod refusal;
 mod report;

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+pub use gyro_program::elementary::Function;
+
 /// Place of a value in [`Program::nodes`].
 pub type Id = usize;
 
@@ -22,10 +24,8 @@ pub enum Node {
     Div(Id, Id),
     /// Negation.
     Neg(Id),
-    /// A function of one argument.
-    Call(Function, Id),
-    /// The angle of the point (second, first).
-    Atan2(Id, Id),
+    /// An elementary function; of one argument both are the same.
+    Call(Function, [Id; 2]),
     /// Value (order 0) or a derivative of a table's curve at a time.
     Curve {
         /// Index into the module's tables.
@@ -68,19 +68,6 @@ pub enum Source {
     Before(usize),
 }
 
-/// A function of one argument.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Function {
-    /// Sine.
-    Sin,
-    /// Cosine.
-    Cos,
-    /// Hyperbolic tangent.
-    Tanh,
-    /// Square root.
-    Sqrt,
-}
-
 /// A straight-line program.
 #[derive(Clone, Debug, Default)]
 pub struct Program {
@@ -103,10 +90,9 @@ impl Node {
     pub fn operands(&self) -> impl Iterator<Item = Id> {
         let (first, second) = match *self {
             Self::Constant(_) | Self::Read(_) => (None, None),
-            Self::Neg(a) | Self::Call(_, a) | Self::Curve { time: a, .. } => (Some(a), None),
-            Self::Add(a, b) | Self::Sub(a, b) | Self::Mul(a, b) | Self::Div(a, b) | Self::Atan2(a, b) => {
-                (Some(a), Some(b))
-            }
+            Self::Neg(a) | Self::Curve { time: a, .. } => (Some(a), None),
+            Self::Call(function, [a, b]) => (Some(a), (function.arity() == 2).then_some(b)),
+            Self::Add(a, b) | Self::Sub(a, b) | Self::Mul(a, b) | Self::Div(a, b) => (Some(a), Some(b)),
         };
         first.into_iter().chain(second)
     }
@@ -120,9 +106,8 @@ impl Node {
             Self::Sub(a, b) => Self::Sub(other(a), other(b)),
             Self::Mul(a, b) => Self::Mul(other(a), other(b)),
             Self::Div(a, b) => Self::Div(other(a), other(b)),
-            Self::Atan2(a, b) => Self::Atan2(other(a), other(b)),
             Self::Neg(a) => Self::Neg(other(a)),
-            Self::Call(function, a) => Self::Call(function, other(a)),
+            Self::Call(function, operands) => Self::Call(function, operands.map(other)),
             Self::Curve { table, order, time } => Self::Curve { table, order, time: other(time) },
         }
     }
@@ -187,7 +172,7 @@ pub struct Operations {
     pub multiplications: usize,
     /// Quotients.
     pub divisions: usize,
-    /// Calls of sin, cos, tanh, √, atan2.
+    /// Calls of elementary functions.
     pub functions: usize,
 }
 
@@ -200,7 +185,7 @@ impl Operations {
                 Node::Add(..) | Node::Sub(..) => operations.additions += 1,
                 Node::Mul(..) => operations.multiplications += 1,
                 Node::Div(..) => operations.divisions += 1,
-                Node::Call(..) | Node::Atan2(..) => operations.functions += 1,
+                Node::Call(..) => operations.functions += 1,
                 Node::Constant(_) | Node::Read(_) | Node::Neg(_) | Node::Curve { .. } => {}
             }
         }

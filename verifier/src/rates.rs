@@ -1,8 +1,8 @@
 //! Derivatives of programs by dual numbers.
 
-use crate::atoms::Atoms;
+use crate::atoms::{Atoms, quotient, rate_of_call, sum};
 use crate::field::Field;
-use crate::program::{Function, Node, Program, Source};
+use crate::program::{Node, Program, Source};
 use gyro_model::Spline;
 
 /// The derivative of each node of a program, its nodes' values and the derivatives of what it reads being given; `None`
@@ -31,16 +31,9 @@ pub fn rates<F: Field>(
                 let change = sum(rate(a).cloned(), times(b, value).map(|x| x.neg()));
                 quotient(change, &values[b])?
             }
-            Node::Call(function, a) => match function {
-                Function::Sin => times(a, &atoms.cos(&values[a])),
-                Function::Cos => times(a, &atoms.sin(&values[a]).neg()),
-                Function::Tanh => sum(rate(a).cloned(), times(a, &value.mul(value)).map(|x| x.neg())),
-                Function::Sqrt => quotient(rate(a).cloned(), &value.add(value))?,
-            },
-            Node::Atan2(y, x) => {
-                let [y_value, x_value] = [&values[y], &values[x]];
-                let turned = sum(times(y, x_value), times(x, y_value).map(|x| x.neg()));
-                quotient(turned, &x_value.mul(x_value).add(&y_value.mul(y_value)))?
+            Node::Call(function, operands) => {
+                let (given, moved) = (operands.map(|id| &values[id]), operands.map(rate));
+                rate_of_call(function, (given, value), moved, atoms)?
             }
             Node::Curve { table, order, time } => match rate(time) {
                 Some(rate) => Some(atoms.spline(&tables[table], &values[time]).get(order + 1)?.mul(rate)),
@@ -52,26 +45,12 @@ pub fn rates<F: Field>(
     Some(rates)
 }
 
-fn sum<F: Field>(a: Option<F>, b: Option<F>) -> Option<F> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(a.add(&b)),
-        (a, b) => a.or(b),
-    }
-}
-
-/// Zero by structure over anything is zero by structure; nothing by zero.
-fn quotient<F: Field>(a: Option<F>, b: &F) -> Option<Option<F>> {
-    match a {
-        Some(a) => a.div(b).map(Some),
-        None => Some(None),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::atoms::Elementary;
     use crate::interpreter::{Environment, value};
+    use crate::program::Function;
 
     /// Every operation there is, of one variable, against a central difference.
     #[test]
@@ -80,14 +59,14 @@ mod tests {
         let x = program.push(Node::Read(Source::Time), 1);
         let squared = program.push(Node::Mul(x, x), 1);
         let sum = program.push(Node::Add(squared, x), 1);
-        let sin = program.push(Node::Call(Function::Sin, sum), 1);
-        let cos = program.push(Node::Call(Function::Cos, squared), 1);
-        let tanh = program.push(Node::Call(Function::Tanh, sin), 1);
+        let sin = program.push(Node::Call(Function::Sin, [sum; 2]), 1);
+        let cos = program.push(Node::Call(Function::Cos, [squared; 2]), 1);
+        let tanh = program.push(Node::Call(Function::Tanh, [sin; 2]), 1);
         let minus = program.push(Node::Neg(tanh), 1);
         let difference = program.push(Node::Sub(minus, sum), 1);
-        let root = program.push(Node::Call(Function::Sqrt, sum), 1);
+        let root = program.push(Node::Call(Function::Sqrt, [sum; 2]), 1);
         let quotient = program.push(Node::Div(difference, root), 1);
-        let angle = program.push(Node::Atan2(quotient, cos), 1);
+        let angle = program.push(Node::Call(Function::Atan2, [quotient, cos]), 1);
         for order in [0, 1] {
             program.push(Node::Curve { table: 0, order, time: angle }, 1);
         }

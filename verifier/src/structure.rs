@@ -45,8 +45,7 @@ enum Made {
     Sum(usize, usize, bool),
     Product(usize, usize),
     Quotient(usize, usize),
-    Call(crate::program::Function, Signed),
-    Atan2(Signed, Signed),
+    Call(crate::program::Function, [Signed; 2]),
 }
 
 /// So many operations for each that a loop may do again: what parts share by chance they compute apart.
@@ -70,8 +69,7 @@ fn repetitions(program: &Program) -> Vec<(usize, usize)> {
                 (Made::Product(a.min(b), a.max(b)), minus_a != minus_b)
             }
             Node::Div(a, b) => (Made::Quotient(values[a].0, values[b].0), values[a].1 != values[b].1),
-            Node::Call(function, a) => (Made::Call(function, values[a]), false),
-            Node::Atan2(a, b) => (Made::Atan2(values[a], values[b]), false),
+            Node::Call(function, operands) => (Made::Call(function, operands.map(|a| values[a])), false),
             leaf => (Made::Leaf(leaf), false),
         };
         let fresh = known.len();

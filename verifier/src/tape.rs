@@ -292,24 +292,8 @@ impl<'t> Field for Term<'t> {
 pub struct Written;
 
 impl<'t> Atoms<Term<'t>> for Written {
-    fn sin(&self, x: &Term<'t>) -> Term<'t> {
-        x.note(Node::Call(Function::Sin, x.id))
-    }
-
-    fn cos(&self, x: &Term<'t>) -> Term<'t> {
-        x.note(Node::Call(Function::Cos, x.id))
-    }
-
-    fn tanh(&self, x: &Term<'t>) -> Term<'t> {
-        x.note(Node::Call(Function::Tanh, x.id))
-    }
-
-    fn atan2(&self, y: &Term<'t>, x: &Term<'t>) -> Term<'t> {
-        x.note(Node::Atan2(y.id, x.id))
-    }
-
-    fn sqrt(&self, x: &Term<'t>) -> Term<'t> {
-        x.note(Node::Call(Function::Sqrt, x.id))
+    fn call(&self, function: Function, operands: [&Term<'t>; 2]) -> Term<'t> {
+        operands[0].note(Node::Call(function, operands.map(|x| x.id)))
     }
 
     fn spline(&self, table: &Spline, t: &Term<'t>) -> [Term<'t>; 3] {

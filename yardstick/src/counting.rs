@@ -1,6 +1,6 @@
 //! How many operations a derivation takes, counted while it is evaluated.
 
-use gyro_sim::Scalar;
+use gyro_sim::{Elementary, Scalar};
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
@@ -111,21 +111,16 @@ impl Scalar for Counted {
     fn constant(value: f64) -> Self {
         Self(value)
     }
-    fn sqrt(self) -> Self {
-        count(Operations { roots: 1, ..Operations::default() });
-        Self(self.0.sqrt())
-    }
-    fn sin(self) -> Self {
-        self.sin_cos().0
-    }
-    fn cos(self) -> Self {
-        self.sin_cos().1
-    }
-    fn tanh(self) -> Self {
-        Self::flop(self.0.tanh())
-    }
-    fn atan2(self, x: Self) -> Self {
-        Self::flop(self.0.atan2(x.0))
+    fn call(function: Elementary, [x, y]: [Self; 2]) -> Self {
+        match function {
+            Elementary::Sqrt => {
+                count(Operations { roots: 1, ..Operations::default() });
+                Self(x.0.sqrt())
+            }
+            Elementary::Sin => x.sin_cos().0,
+            Elementary::Cos => x.sin_cos().1,
+            _ => Self::flop(f64::call(function, [x.0, y.0])),
+        }
     }
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
         self.0.spline(knots, pieces).map(Self)

@@ -239,13 +239,10 @@ impl<'a, V: Variables> Writer<'a, V> {
                 let (x, y, added) = (sum(x), sum(y), sum(added));
                 (quote! { T::fused(#x, #y, #added) }, Binding::Call)
             }
-            Operation::Sqrt(a) => self.function("sqrt", *a),
-            Operation::Sin(a) => self.function("sin", *a),
-            Operation::Cos(a) => self.function("cos", *a),
-            Operation::Tanh(a) => self.function("tanh", *a),
-            Operation::Atan2(y, x) => {
-                let (y, x) = (self.expression(*y, Binding::Call), sum(x));
-                (quote! { #y.atan2(#x) }, Binding::Call)
+            Operation::Call(function, [a, b]) => {
+                let (name, a) = (ident(function.name()), self.expression(*a, Binding::Call));
+                let b = (function.arity() == 2).then(|| sum(b));
+                (quote! { #a.#name(#b) }, Binding::Call)
             }
         }
     }
@@ -253,11 +250,6 @@ impl<'a, V: Variables> Writer<'a, V> {
     fn literal(&self, constant: &Constant) -> TokenStream {
         self.has_literals.set(true);
         self.literals.stand_in(constant)
-    }
-
-    fn function(&self, name: &str, a: Place) -> (TokenStream, Binding) {
-        let (name, a) = (ident(name), self.expression(a, Binding::Call));
-        (quote! { #a.#name() }, Binding::Call)
     }
 }
 

@@ -2,8 +2,10 @@
 
 use crate::expr::by_expr::ByExpr;
 use crate::expr::definitions::Definitions;
+use crate::expr::elementary;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
+use gyro_program::elementary::Function;
 use rustc_hash::FxHashMap as HashMap;
 use std::collections::BTreeMap;
 
@@ -52,31 +54,13 @@ impl<'a> Derivative<'a> {
                 let product = graph.mul(self.memo[a], square);
                 graph.neg(product)
             }
-            // (√a)' = a' / (2 √a)
-            Node::Sqrt(a) => {
-                let two = graph.integer(2);
-                let denominator = graph.mul(two, id);
-                graph.div(self.memo[a], denominator)
-            }
-            // sin' = cos · a'
-            Node::Sin(a) => {
-                let cos = graph.cos(a);
-                graph.mul(cos, self.memo[a])
-            }
-            // cos' = -sin · a'
-            Node::Cos(a) => {
-                let sin = graph.sin(a);
-                let product = graph.mul(sin, self.memo[a]);
-                graph.neg(product)
-            }
-            // tanh' = (1 − tanh²) · a'
-            Node::Tanh(a) => {
-                let square = graph.mul(id, id);
-                let slope = graph.sub(Graph::ONE, square);
-                graph.mul(slope, self.memo[a])
-            }
             // atan2(y, x)' = (x y' − y x') / (x² + y²)
-            Node::Atan2(y, x) => angle_rate(graph, (y, x), (self.memo[y], self.memo[x])),
+            Node::Call(Function::Atan2, [y, x]) => angle_rate(graph, (y, x), (self.memo[y], self.memo[x])),
+            // f(a, b)' = f_a a' + f_b b'
+            Node::Call(function, operands) => {
+                let slopes = elementary::slopes(graph, function, operands, id);
+                graph.dot(&slopes, &operands.map(|operand| self.memo[operand]))
+            }
         }
     }
 
@@ -142,23 +126,9 @@ fn factors(graph: &mut Graph, id: ExprId) -> Vec<(ExprId, ExprId)> {
             let square = graph.mul(id, id);
             vec![(a, graph.neg(square))]
         }
-        Node::Sqrt(a) => {
-            let half = graph.fraction(1, 2);
-            vec![(a, graph.div(half, id))]
-        }
-        Node::Sin(a) => vec![(a, graph.cos(a))],
-        Node::Cos(a) => {
-            let sin = graph.sin(a);
-            vec![(a, graph.neg(sin))]
-        }
-        Node::Tanh(a) => {
-            let square = graph.mul(id, id);
-            vec![(a, graph.sub(Graph::ONE, square))]
-        }
-        Node::Atan2(y, x) => {
-            let square = graph.dot(&[x, y], &[x, y]);
-            let (by_y, by_x) = (graph.div(x, square), graph.div(y, square));
-            vec![(y, by_y), (x, graph.neg(by_x))]
+        Node::Call(function, operands) => {
+            let slopes = elementary::slopes(graph, function, operands, id);
+            operands.into_iter().zip(slopes).take(function.arity()).collect()
         }
     }
 }
@@ -216,11 +186,9 @@ mod tests {
         check(|g, x, _| g.neg(x));
         check(|g, x, _| g.recip(x));
         check(|g, x, y| g.div(x, y));
-        check(|g, _, y| g.sqrt(y));
-        check(|g, x, _| g.sin(x));
-        check(|g, _, y| g.cos(y));
-        check(|g, x, _| g.tanh(x));
-        check(|g, x, y| g.atan2(x, y));
+        for function in Function::ALL {
+            check(|g, x, y| g.call(function, if function.arity() == 2 { [x, y] } else { [y, y] }));
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use crate::expr::by_expr::ByExpr;
 use crate::expr::domains::between;
+use crate::expr::elementary;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use num_traits::Float;
@@ -43,11 +44,7 @@ impl<'g> Program<'g> {
                 Node::Mul(..) => operand(a) * operand(b),
                 Node::Neg(_) => -operand(a),
                 Node::Recip(_) => operand(a).recip(),
-                Node::Sqrt(_) => operand(a).sqrt(),
-                Node::Sin(_) => operand(a).sin(),
-                Node::Cos(_) => operand(a).cos(),
-                Node::Tanh(_) => operand(a).tanh(),
-                Node::Atan2(..) => operand(a).atan2(operand(b)),
+                Node::Call(function, _) => elementary::value(*function, [operand(a), operand(b)]),
             };
             values.push(result);
         }

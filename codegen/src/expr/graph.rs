@@ -8,6 +8,7 @@ use crate::expr::constant::Constant;
 use crate::expr::domains::Domains;
 use crate::expr::symbol::Symbol;
 use gyro_model::Rational;
+use gyro_program::elementary::{Function, Parity, Signature};
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 use rustc_hash::FxBuildHasher;
@@ -36,12 +37,8 @@ pub enum Node {
     Neg(ExprId),
     /// `1 / x`.
     Recip(ExprId),
-    Sqrt(ExprId),
-    Sin(ExprId),
-    Cos(ExprId),
-    Tanh(ExprId),
-    /// The angle of the point (second operand, first operand).
-    Atan2(ExprId, ExprId),
+    /// An elementary function; of one operand both are the same.
+    Call(Function, [ExprId; 2]),
 }
 
 impl Node {
@@ -49,10 +46,9 @@ impl Node {
     pub fn operands(&self) -> impl Iterator<Item = ExprId> + use<> {
         let (a, b) = match *self {
             Self::Constant(_) | Self::Symbol(_) => (None, None),
-            Self::Add(a, b) | Self::Mul(a, b) | Self::Atan2(a, b) => (Some(a), Some(b)),
-            Self::Neg(a) | Self::Recip(a) | Self::Sqrt(a) | Self::Sin(a) | Self::Cos(a) | Self::Tanh(a) => {
-                (Some(a), None)
-            }
+            Self::Add(a, b) | Self::Mul(a, b) => (Some(a), Some(b)),
+            Self::Neg(a) | Self::Recip(a) => (Some(a), None),
+            Self::Call(function, [a, b]) => (Some(a), (function.arity() == 2).then_some(b)),
         };
         a.into_iter().chain(b)
     }
@@ -64,13 +60,9 @@ impl Node {
             Self::Constant(_) | Self::Symbol(_) => self.clone(),
             Self::Add(a, b) => Self::Add(other(*a), other(*b)),
             Self::Mul(a, b) => Self::Mul(other(*a), other(*b)),
-            Self::Atan2(a, b) => Self::Atan2(other(*a), other(*b)),
             Self::Neg(a) => Self::Neg(other(*a)),
             Self::Recip(a) => Self::Recip(other(*a)),
-            Self::Sqrt(a) => Self::Sqrt(other(*a)),
-            Self::Sin(a) => Self::Sin(other(*a)),
-            Self::Cos(a) => Self::Cos(other(*a)),
-            Self::Tanh(a) => Self::Tanh(other(*a)),
+            Self::Call(function, operands) => Self::Call(*function, operands.map(other)),
         }
     }
 }
@@ -253,45 +245,46 @@ impl Graph {
         self.mul(a, inverse)
     }
 
+    /// An elementary function of these operands; of one operand both are the same. A sign moves outwards, or vanishes.
+    pub fn call(&mut self, function: Function, operands: [ExprId; 2]) -> ExprId {
+        let Signature { arity, parity, at_zero, .. } = function.signature();
+        match (function, operands, at_zero) {
+            (_, [Self::ZERO, _], Some(value)) => return self.integer(value),
+            (Function::Sqrt, [a, _], _) => {
+                if let Some(root) = self.as_constant(a).and_then(Constant::sqrt) {
+                    return self.constant(root);
+                }
+            }
+            _ => {}
+        }
+        // The signs of points move outwards when a tape is made.
+        if arity == 2 || parity == Parity::Neither {
+            return self.intern(Node::Call(function, operands));
+        }
+        let (is_negative, x) = self.split_sign(operands[0]);
+        let value = self.intern(Node::Call(function, [x, x]));
+        if is_negative && parity == Parity::Odd { self.neg(value) } else { value }
+    }
+
     pub fn sqrt(&mut self, a: ExprId) -> ExprId {
-        match self.as_constant(a).and_then(Constant::sqrt) {
-            Some(root) => self.constant(root),
-            None => self.intern(Node::Sqrt(a)),
-        }
+        self.call(Function::Sqrt, [a, a])
     }
 
-    /// Odd: the sign moves outwards.
     pub fn sin(&mut self, a: ExprId) -> ExprId {
-        if a == Self::ZERO {
-            return a;
-        }
-        let (negative, x) = self.split_sign(a);
-        let sin = self.intern(Node::Sin(x));
-        if negative { self.neg(sin) } else { sin }
+        self.call(Function::Sin, [a, a])
     }
 
-    /// Even: the sign vanishes.
     pub fn cos(&mut self, a: ExprId) -> ExprId {
-        if a == Self::ZERO {
-            return Self::ONE;
-        }
-        let (_, x) = self.split_sign(a);
-        self.intern(Node::Cos(x))
+        self.call(Function::Cos, [a, a])
     }
 
-    /// Odd: the sign moves outwards.
     pub fn tanh(&mut self, a: ExprId) -> ExprId {
-        if a == Self::ZERO {
-            return a;
-        }
-        let (negative, x) = self.split_sign(a);
-        let tanh = self.intern(Node::Tanh(x));
-        if negative { self.neg(tanh) } else { tanh }
+        self.call(Function::Tanh, [a, a])
     }
 
     /// The angle of the point (x, y), in (−π, π].
     pub fn atan2(&mut self, y: ExprId, x: ExprId) -> ExprId {
-        self.intern(Node::Atan2(y, x))
+        self.call(Function::Atan2, [y, x])
     }
 
     /// `c · x`, the sign outermost.
@@ -372,7 +365,7 @@ impl Graph {
             _ if b == Self::ONE => Some(a),
             (Node::Recip(x), _) if *x == b => Some(Self::ONE),
             (_, Node::Recip(x)) if *x == a => Some(Self::ONE),
-            (Node::Sqrt(x), Node::Sqrt(y)) if x == y => Some(*x),
+            (Node::Call(Function::Sqrt, [x, _]), Node::Call(Function::Sqrt, [y, _])) if x == y => Some(*x),
             _ => None,
         }
     }
@@ -384,11 +377,7 @@ impl Graph {
             Node::Mul(a, b) => self.mul(a, b),
             Node::Neg(a) => self.neg(a),
             Node::Recip(a) => self.recip(a),
-            Node::Sqrt(a) => self.sqrt(a),
-            Node::Sin(a) => self.sin(a),
-            Node::Cos(a) => self.cos(a),
-            Node::Tanh(a) => self.tanh(a),
-            Node::Atan2(a, b) => self.atan2(a, b),
+            Node::Call(function, operands) => self.call(function, operands),
             Node::Constant(_) | Node::Symbol(_) => self.intern(node),
         }
     }

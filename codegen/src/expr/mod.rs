@@ -5,6 +5,7 @@ pub mod constant;
 pub mod definitions;
 pub mod differentiate;
 pub mod domains;
+pub mod elementary;
 pub mod evaluate;
 pub mod graph;
 pub mod rounding;

@@ -7,6 +7,7 @@
 
 use crate::expr::by_expr::ByExpr;
 use crate::expr::domains::{POINTS, mix};
+use crate::expr::elementary;
 use crate::expr::graph::{ExprId, Graph, Node};
 
 /// How many samples an error is made of.
@@ -142,13 +143,9 @@ impl<'g> Step<'g> {
             Node::Mul(..) => (x * y, [y, x]),
             Node::Neg(_) => (-x, [-1.0, 0.0]),
             Node::Recip(_) => (x.recip(), [-x.recip().powi(2), 0.0]),
-            Node::Sqrt(_) => (x.sqrt(), [0.5 / x.sqrt(), 0.0]),
-            Node::Sin(_) => (x.sin(), [x.cos(), 0.0]),
-            Node::Cos(_) => (x.cos(), [-x.sin(), 0.0]),
-            Node::Tanh(_) => (x.tanh(), [1.0 - x.tanh().powi(2), 0.0]),
-            Node::Atan2(..) => {
-                let square = x * x + y * y;
-                (x.atan2(y), [y / square, -x / square])
+            Node::Call(function, _) => {
+                let value = elementary::value(*function, [x, y]);
+                (value, elementary::slopes_at(*function, [x, y], value))
             }
         };
         let errors = std::array::from_fn(|lane| {

@@ -182,7 +182,7 @@ fn arrival(graph: &Graph, id: ExprId, carried: &HashMap<Symbol, u64>, of: impl F
             Node::Add(..) => SUM,
             Node::Mul(..) => PRODUCT,
             Node::Recip(_) => QUOTIENT,
-            Node::Sqrt(_) | Node::Sin(_) | Node::Cos(_) | Node::Tanh(_) | Node::Atan2(..) => FUNCTION,
+            Node::Call(..) => FUNCTION,
         }
 }
 

@@ -300,11 +300,8 @@ impl Body<'_, '_> {
                 if kind == Kind::Scaled { Node::Mul(constant, x) } else { Node::Add(constant, x) }
             }
             (Kind::Reciprocal, &[x]) => Node::Recip(x),
-            (Kind::Root, &[x]) => Node::Sqrt(x),
-            (Kind::Sine, &[x]) => Node::Sin(x),
-            (Kind::Cosine, &[x]) => Node::Cos(x),
-            (Kind::HyperbolicTangent, &[x]) => Node::Tanh(x),
-            (Kind::Angle, &[y, x]) => Node::Atan2(y, x),
+            (Kind::Call(function), &[x]) => Node::Call(function, [x, x]),
+            (Kind::Call(function), &[x, y]) => Node::Call(function, [x, y]),
             _ => unreachable!("variables and constants are not computed"),
         };
         built(&mut self.graph, node)

@@ -8,6 +8,7 @@ use super::columns::{Columns, Source};
 use super::loops::Loops;
 use super::orbits::{Orbit, Orbits};
 use super::terms::{Kind, Place, Terms};
+use gyro_program::elementary::Parity;
 use rustc_hash::FxHashMap as HashMap;
 
 /// A sum of unknowns, in ascending order, and one if the second part is true, modulo two.
@@ -79,17 +80,15 @@ impl Signs {
                         Kind::Product | Kind::Quotient => plus(&given[0], &given[1]),
                         Kind::Scaled if is_first => (Vec::new(), false),
                         Kind::Scaled => equations.unknown(),
-                        Kind::Reciprocal | Kind::Sine | Kind::HyperbolicTangent => given[0].clone(),
-                        Kind::Cosine => (Vec::new(), false),
-                        Kind::Root => {
-                            let first = operand(0);
-                            equations.equate(&first, &given[0])?;
-                            (Vec::new(), false)
-                        }
-                        Kind::Angle => {
-                            let first = operand(1);
-                            equations.equate(&first, &given[1])?;
-                            given[0].clone()
+                        Kind::Reciprocal => given[0].clone(),
+                        Kind::Call(function) => {
+                            let parity = function.signature().parity;
+                            let same = usize::from(parity != Parity::Neither)..given.len();
+                            let firsts: Vec<Form> = same.clone().map(&mut operand).collect();
+                            for (slot, first) in same.zip(firsts) {
+                                equations.equate(&first, &given[slot])?;
+                            }
+                            if parity == Parity::Odd { given[0].clone() } else { (Vec::new(), false) }
                         }
                         Kind::Variable { .. } | Kind::Constant => return None,
                     };

@@ -6,6 +6,7 @@ use crate::expr::by_expr::ByExpr;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Uses;
 use crate::expr::symbol::Symbol;
+use gyro_program::elementary::Function;
 use rustc_hash::FxHashSet as HashSet;
 use std::ops::{Deref, DerefMut};
 
@@ -30,11 +31,7 @@ pub enum Kind {
     /// A product with a reciprocal that nobody else uses: numerator and denominator.
     Quotient,
     Reciprocal,
-    Root,
-    Sine,
-    Cosine,
-    HyperbolicTangent,
-    Angle,
+    Call(Function),
 }
 
 impl Kind {
@@ -48,12 +45,12 @@ impl Kind {
 
     /// Whether it is one of + − × ÷.
     pub fn is_counted(self) -> bool {
-        self.is_operation() && !self.is_function() && self != Self::Root
+        self.is_operation() && !matches!(self, Self::Call(_))
     }
 
-    /// Whether it is a call of a function.
+    /// Whether it is a call of a function: a root is an instruction.
     pub fn is_function(self) -> bool {
-        matches!(self, Self::Sine | Self::Cosine | Self::HyperbolicTangent | Self::Angle)
+        matches!(self, Self::Call(function) if function != Function::Sqrt)
     }
 }
 
@@ -165,11 +162,7 @@ impl Terms {
                 (kind, constant)
             }
             Node::Recip(_) => (Kind::Reciprocal, None),
-            Node::Sqrt(_) => (Kind::Root, None),
-            Node::Sin(_) => (Kind::Sine, None),
-            Node::Cos(_) => (Kind::Cosine, None),
-            Node::Tanh(_) => (Kind::HyperbolicTangent, None),
-            Node::Atan2(..) => (Kind::Angle, None),
+            Node::Call(function, _) => (Kind::Call(*function), None),
             Node::Neg(_) => unreachable!("signs belong to operands"),
         };
         let place = self.all.len();

@@ -7,6 +7,7 @@ use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::schedule::Program;
 use crate::expr::symbol::Symbol;
 use crate::repeat::{Before, Repeat, Rolled, Row};
+use gyro_program::elementary::Function;
 use rustc_hash::FxHashSet as HashSet;
 
 /// The tape of a kernel without loops.
@@ -128,11 +129,11 @@ impl<'g> Builder<'g> {
                 let one = self.push(Operation::Constant(Constant::integer(1)));
                 Operation::Divide(one, self.value(a))
             }
-            Node::Sqrt(a) => Operation::Sqrt(self.value(a)),
-            Node::Sin(a) => Operation::Sin(self.value(a)),
-            Node::Cos(a) => Operation::Cos(self.value(a)),
-            Node::Tanh(a) => Operation::Tanh(self.value(a)),
-            Node::Atan2(y, x) => self.angle(y, x),
+            Node::Call(Function::Atan2, [y, x]) => self.angle(y, x),
+            Node::Call(function, [a, b]) => {
+                let a = self.value(a);
+                Operation::Call(function, [a, if function.arity() == 2 { self.value(b) } else { a }])
+            }
         };
         self.push(operation)
     }
@@ -196,14 +197,14 @@ impl<'g> Builder<'g> {
     /// Odd in y: a sign before it is one before the angle.
     fn angle(&mut self, y: ExprId, x: ExprId) -> Operation<Symbol, Constant> {
         let Node::Neg(opposite) = *self.graph.node(y) else {
-            return Operation::Atan2(self.value(y), self.value(x));
+            return Operation::Call(Function::Atan2, [y, x].map(|id| self.value(id)));
         };
         match self.negation(opposite) {
             Operation::Negate(y) => {
-                let angle = Operation::Atan2(y, self.value(x));
+                let angle = Operation::Call(Function::Atan2, [y, self.value(x)]);
                 Operation::Negate(self.push(angle))
             }
-            y => Operation::Atan2(self.push(y), self.value(x)),
+            y => Operation::Call(Function::Atan2, [self.push(y), self.value(x)]),
         }
     }
 }

@@ -8,6 +8,7 @@ mod build;
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
 use crate::repeat::Local;
+use gyro_program::elementary::Function;
 
 pub use crate::repeat::{At, Direction, Row, Shape};
 pub(crate) use build::{looped, straight};
@@ -29,12 +30,8 @@ pub enum Operation<V, C> {
     Negate(Place),
     /// `a b + c`: rounded once where the run time fuses, else twice.
     Fused(Place, Place, Place),
-    Sqrt(Place),
-    Sin(Place),
-    Cos(Place),
-    Tanh(Place),
-    /// The angle of the point (second operand, first operand).
-    Atan2(Place, Place),
+    /// An elementary function; of one operand both are the same.
+    Call(Function, [Place; 2]),
 }
 
 /// Straight-line operations on variables `V` and constants `C`.
@@ -94,14 +91,11 @@ impl<V, C> Operation<V, C> {
     pub fn operands(&self) -> impl Iterator<Item = Place> + use<V, C> {
         let (a, b, c) = match *self {
             Self::Constant(_) | Self::Variable(_) => (None, None, None),
-            Self::Negate(a) | Self::Sqrt(a) | Self::Sin(a) | Self::Cos(a) | Self::Tanh(a) => {
-                (Some(a), None, None)
+            Self::Negate(a) => (Some(a), None, None),
+            Self::Call(function, [a, b]) => (Some(a), (function.arity() == 2).then_some(b), None),
+            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => {
+                (Some(a), Some(b), None)
             }
-            Self::Add(a, b)
-            | Self::Subtract(a, b)
-            | Self::Multiply(a, b)
-            | Self::Divide(a, b)
-            | Self::Atan2(a, b) => (Some(a), Some(b), None),
             Self::Fused(a, b, c) => (Some(a), Some(b), Some(c)),
         };
         a.into_iter().chain(b).chain(c)
@@ -121,11 +115,7 @@ impl<V, C> Operation<V, C> {
             Self::Divide(a, b) => Operation::Divide(*a, *b),
             Self::Negate(a) => Operation::Negate(*a),
             Self::Fused(a, b, c) => Operation::Fused(*a, *b, *c),
-            Self::Sqrt(a) => Operation::Sqrt(*a),
-            Self::Sin(a) => Operation::Sin(*a),
-            Self::Cos(a) => Operation::Cos(*a),
-            Self::Tanh(a) => Operation::Tanh(*a),
-            Self::Atan2(y, x) => Operation::Atan2(*y, *x),
+            Self::Call(function, operands) => Operation::Call(*function, *operands),
         }
     }
 }

@@ -2,12 +2,12 @@
 
 use super::{chart, sine};
 use crate::fused::IS_FUSED;
-use crate::{Lanes, Scalar};
+use crate::{Elementary, Lanes, Scalar};
 use wide::{f32x8, f64x2, f64x4, f64x8};
 
 /// A function that is left to libm, lane after lane.
-fn each<T: Lanes>(x: T, function: impl Fn(T::Lane) -> T::Lane) -> T {
-    T::from_lanes(|lane| function(x.lane(lane)))
+fn each<T: Lanes, const N: usize>(packs: [T; N], function: impl Fn([T::Lane; N]) -> T::Lane) -> T {
+    T::from_lanes(|lane| function(packs.map(|pack| pack.lane(lane))))
 }
 
 macro_rules! pack {
@@ -21,30 +21,21 @@ macro_rules! pack {
             fn fused(a: Self, b: Self, c: Self) -> Self {
                 if IS_FUSED { a.mul_add(b, c) } else { a * b + c }
             }
-            #[inline]
-            fn sqrt(self) -> Self {
-                Self::sqrt(self)
-            }
             #[inline(always)]
-            fn sin(self) -> Self {
-                $sin(self)
-            }
-            #[inline(always)]
-            fn cos(self) -> Self {
-                $cos(self)
-            }
-            fn tanh(self) -> Self {
-                each(self, Scalar::tanh)
-            }
-            fn atan2(self, x: Self) -> Self {
-                Self::from_lanes(|lane| Scalar::atan2(self.lane(lane), x.lane(lane)))
+            fn call(function: Elementary, operands: [Self; 2]) -> Self {
+                match function {
+                    Elementary::Sqrt => Self::sqrt(operands[0]),
+                    Elementary::Sin => $sin(operands[0]),
+                    Elementary::Cos => $cos(operands[0]),
+                    _ => each(operands, |operands| Scalar::call(function, operands)),
+                }
             }
             fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
                 let lanes = self.to_array().map(|t| Scalar::spline(t, knots, pieces));
                 [0, 1, 2].map(|order| Self::from_lanes(|lane| lanes[lane][order]))
             }
             fn spline_third(self, knots: &[f64], pieces: &[[f64; 4]]) -> Self {
-                each(self, |t| Scalar::spline_third(t, knots, pieces))
+                each([self], |[t]| Scalar::spline_third(t, knots, pieces))
             }
         }
 

@@ -18,7 +18,7 @@ fn numbers<T: Native + Real>(dice: &mut ChaCha8Rng) -> Vec<T> {
 }
 
 /// Compares all kernels of a mechanism; returns how many there are, and how many have loops.
-fn check<T: Native + Real>(name: &str, model: &Model, scheduled: &Scheduled) -> [usize; 2] {
+pub fn check<T: Native + Real>(name: &str, model: &Model, scheduled: &Scheduled) -> [usize; 2] {
     let compiled: Compiled<T> = compile_scheduled(model, scheduled.clone(), None).unwrap();
     let interpreted = compiled.interpreted::<T>();
     let mut dice = ChaCha8Rng::seed_from_u64(1);
@@ -38,7 +38,7 @@ fn check<T: Native + Real>(name: &str, model: &Model, scheduled: &Scheduled) -> 
 }
 
 /// Compares both lanes of all kernels with a mechanism in `f64`.
-fn check_pairs(name: &str, model: &Model, scheduled: &Scheduled) {
+pub fn check_pairs(name: &str, model: &Model, scheduled: &Scheduled) {
     let single: Compiled<f64> = compile_scheduled(model, scheduled.clone(), None).unwrap();
     let pairs = single.compiled::<f64x2>().unwrap();
     let mut dice = ChaCha8Rng::seed_from_u64(2);

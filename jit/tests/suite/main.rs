@@ -3,6 +3,7 @@
 
 mod compiled;
 mod contacts;
+mod functions;
 mod kernels;
 mod lengths;
 mod pair;

@@ -9,6 +9,7 @@ use chacha20::ChaCha8Rng;
 use gyro_codegen::{Effort, Functions, ROUNDING};
 use gyro_model::Rational;
 use gyro_sim::{Joint, JointSpace, Rk4};
+use gyro_verifier::atoms::{Atoms, Elementary};
 use gyro_verifier::field::{Field, Precision, Real};
 use rand::{RngExt, SeedableRng};
 use std::fmt::Write as _;
@@ -57,10 +58,10 @@ impl Number for f64 {
 
 impl Number for Real<'_> {
     fn sine(&self) -> Self {
-        self.sin()
+        Elementary.sin(self)
     }
     fn cosine(&self) -> Self {
-        self.cos()
+        Elementary.cos(self)
     }
 }
 

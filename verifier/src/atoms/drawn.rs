@@ -1,7 +1,9 @@
 //! Atoms drawn at random, one for each argument.
 
 use super::Atoms;
+use super::elementary::{Symmetry, symmetry};
 use crate::field::{Field, Modular, Prime};
+use crate::program::Function;
 use chacha20::ChaCha8Rng;
 use gyro_model::Spline;
 use std::cell::{Cell, RefCell};
@@ -17,8 +19,8 @@ pub struct Drawn<'p, const L: usize> {
     random: RefCell<ChaCha8Rng>,
     /// Cosine and sine of each argument that was met, and of its halves.
     circle: Table<[u64; L], (Modular<'p, L>, Modular<'p, L>)>,
-    tanh: Table<[u64; L], Modular<'p, L>>,
-    atan2: Table<([u64; L], [u64; L]), Modular<'p, L>>,
+    /// Of other functions the value at one operand or two.
+    others: Table<Call<L>, Modular<'p, L>>,
     splines: Table<(Vec<u64>, [u64; L]), [Modular<'p, L>; 3]>,
     /// What stands for roots that do not exist.
     roots: Table<[u64; L], Modular<'p, L>>,
@@ -29,6 +31,9 @@ pub struct Drawn<'p, const L: usize> {
 /// quarter of it. A point of the circle is drawn for the last one, and doubled.
 pub(crate) const HALVINGS: u32 = 8;
 
+/// A function with the keys of its operands.
+type Call<const L: usize> = (Function, [u64; L], Option<[u64; L]>);
+
 type Table<K, V> = RefCell<HashMap<K, V>>;
 
 impl<'p, const L: usize> Drawn<'p, L> {
@@ -38,8 +43,7 @@ impl<'p, const L: usize> Drawn<'p, L> {
             prime,
             random: RefCell::new(random),
             circle: RefCell::default(),
-            tanh: RefCell::default(),
-            atan2: RefCell::default(),
+            others: RefCell::default(),
             splines: RefCell::default(),
             roots: RefCell::default(),
             missed: Cell::new(false),
@@ -87,6 +91,29 @@ impl<'p, const L: usize> Drawn<'p, L> {
         point
     }
 
+    /// A function of which no more is known than what the sign of its first operand does.
+    fn other(&self, function: Function, [x, y]: [&Modular<'p, L>; 2]) -> Modular<'p, L> {
+        let symmetry = symmetry(function);
+        if symmetry == Symmetry::Odd && x.is_zero() {
+            return *x;
+        }
+        let (key, is_negated) = match symmetry {
+            Symmetry::Neither => (x.key(), false),
+            _ => unsigned(x).map_or((None, false), |(key, negated)| (Some(key), negated)),
+        };
+        let second = if function.arity() == 2 { y.key().map(Some) } else { Some(None) };
+        let value = self.value(&self.others, key.zip(second).map(|(x, y)| (function, x, y)));
+        if is_negated && symmetry == Symmetry::Odd { value.neg() } else { value }
+    }
+
+    /// Where there is no root, any number in its place.
+    fn root(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
+        x.sqrt().unwrap_or_else(|| {
+            self.missed.set(true);
+            self.value(&self.roots, x.key())
+        })
+    }
+
     fn learn(&self, angle: &Modular<'p, L>, (cosine, sine): (Modular<'p, L>, Modular<'p, L>)) {
         let mut circle = self.circle.borrow_mut();
         for (key, sine) in [(angle.key(), sine), (angle.neg().key(), sine.neg())] {
@@ -115,42 +142,14 @@ fn unsigned<const L: usize>(x: &Modular<'_, L>) -> Option<([u64; L], bool)> {
     Some(if negated < key { (negated, true) } else { (key, false) })
 }
 
-fn signed<F: Field>(value: &F, negated: bool) -> F {
-    if negated { value.neg() } else { value.clone() }
-}
-
 impl<'p, const L: usize> Atoms<Modular<'p, L>> for Drawn<'p, L> {
-    fn sin(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
-        self.point(x).1
-    }
-
-    fn cos(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
-        self.point(x).0
-    }
-
-    fn tanh(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
-        if x.is_zero() {
-            return *x;
+    fn call(&self, function: Function, operands: [&Modular<'p, L>; 2]) -> Modular<'p, L> {
+        match function {
+            Function::Sin => self.point(operands[0]).1,
+            Function::Cos => self.point(operands[0]).0,
+            Function::Sqrt => self.root(operands[0]),
+            _ => self.other(function, operands),
         }
-        let key = unsigned(x);
-        signed(&self.value(&self.tanh, key.map(|(key, _)| key)), key.is_some_and(|(_, negated)| negated))
-    }
-
-    fn atan2(&self, y: &Modular<'p, L>, x: &Modular<'p, L>) -> Modular<'p, L> {
-        if y.is_zero() {
-            return *y;
-        }
-        let key = unsigned(y).zip(x.key());
-        let value = self.value(&self.atan2, key.map(|((y, _), x)| (y, x)));
-        signed(&value, key.is_some_and(|((_, negated), _)| negated))
-    }
-
-    /// Where there is no root, any number in its place.
-    fn sqrt(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
-        x.sqrt().unwrap_or_else(|| {
-            self.missed.set(true);
-            self.value(&self.roots, x.key())
-        })
     }
 
     fn spline(&self, table: &Spline, t: &Modular<'p, L>) -> [Modular<'p, L>; 3] {

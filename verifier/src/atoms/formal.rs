@@ -2,6 +2,7 @@
 
 use super::Atoms;
 use crate::field::Degree;
+use crate::program::Function;
 use gyro_model::Spline;
 
 /// Atoms over [`Degree`]: each is a new variable or a point of a curve.
@@ -20,26 +21,14 @@ impl Formal {
 }
 
 impl Atoms<Degree> for Formal {
-    fn sin(&self, _: &Degree) -> Degree {
-        self.circle()
-    }
-
-    fn cos(&self, _: &Degree) -> Degree {
-        self.circle()
-    }
-
-    fn tanh(&self, _: &Degree) -> Degree {
-        Degree::polynomial(1.0)
-    }
-
-    fn atan2(&self, _: &Degree, _: &Degree) -> Degree {
-        Degree::polynomial(1.0)
-    }
-
     /// The root of a quotient is of half its degrees; they are counted whole. Where there is none, a variable stands
     /// for it.
-    fn sqrt(&self, x: &Degree) -> Degree {
-        Degree { numerator_log2: x.numerator_log2.max(0.0), ..*x }
+    fn call(&self, function: Function, [x, _]: [&Degree; 2]) -> Degree {
+        match function {
+            Function::Sin | Function::Cos => self.circle(),
+            Function::Sqrt => Degree { numerator_log2: x.numerator_log2.max(0.0), ..*x },
+            _ => Degree::polynomial(1.0),
+        }
     }
 
     fn spline(&self, _: &Spline, _: &Degree) -> [Degree; 3] {

@@ -64,28 +64,23 @@ impl Reader<'_> {
                 self.expect(")")?;
                 Ok(inner)
             }
-            "sqrt" | "sqrtf" => self.called(Function::Sqrt),
-            "libm_sin" | "gyro_sinf" => self.called(Function::Sin),
-            "libm_cos" | "gyro_cosf" => self.called(Function::Cos),
-            "libm_tanh" | "libm_tanhf" => self.called(Function::Tanh),
-            "libm_atan2" | "libm_atan2f" => {
-                self.expect("(")?;
-                let y = self.sum()?;
-                self.expect(",")?;
-                let x = self.sum()?;
-                self.expect(")")?;
-                Ok(self.nodes.push(Node::Atan2(y, x)))
-            }
             "m" => self.of_mechanism(),
-            _ => self.named(&word),
+            _ => match function(&word) {
+                Some(function) => self.called(function),
+                None => self.named(&word),
+            },
         }
     }
 
     fn called(&mut self, function: Function) -> Result<Id, Refusal> {
         self.expect("(")?;
-        let of = self.sum()?;
+        let mut operands = [self.sum()?; 2];
+        for operand in &mut operands[1..function.arity()] {
+            self.expect(",")?;
+            *operand = self.sum()?;
+        }
         self.expect(")")?;
-        Ok(self.nodes.push(Node::Call(function, of)))
+        Ok(self.nodes.push(Node::Call(function, operands)))
     }
 
     /// `m->parameters[NAME]`.
@@ -168,4 +163,11 @@ impl Reader<'_> {
             }
         }
     }
+}
+
+/// The function that a word names: C's own root, and what a source brings itself, with a last letter for `float`.
+fn function(word: &str) -> Option<Function> {
+    let brought = ["libm_", "gyro_"].iter().find_map(|prefix| word.strip_prefix(prefix));
+    let name = brought.or_else(|| word.starts_with("sqrt").then_some(word))?;
+    Function::named(name).or_else(|| Function::named(name.strip_suffix('f')?))
 }

@@ -183,10 +183,12 @@ impl Reader<'_> {
                 return Ok(Then::Next);
             }
             // Sine and cosine of an angle.
-            [sine, cosine, "=", "call", function, angle] if self.functions.get(function) == Some(&4) => {
+            [sine, cosine, "=", "call", function, angle]
+                if self.functions.get(function) == Some(&Function::ALL.len()) =>
+            {
                 let angle = self.number(angle, line)?;
                 for (name, of) in [(sine, Function::Sin), (cosine, Function::Cos)] {
-                    let value = self.nodes.push(Node::Call(of, angle));
+                    let value = self.nodes.push(Node::Call(of, [angle; 2]));
                     self.held.insert(name.to_owned(), Held::Number(value));
                 }
                 return Ok(Then::Next);
@@ -225,7 +227,7 @@ impl Reader<'_> {
             },
             ["call", function, ref arguments @ ..] => self.called(function, arguments, line)?,
             ["fneg", a] => Node::Neg(self.number(a, line)?),
-            ["sqrt", a] => Node::Call(Function::Sqrt, self.number(a, line)?),
+            ["sqrt", a] => Node::Call(Function::Sqrt, [self.number(a, line)?; 2]),
             ["fadd", a, b] => Node::Add(self.number(a, line)?, self.number(b, line)?),
             ["fsub", a, b] => Node::Sub(self.number(a, line)?, self.number(b, line)?),
             ["fmul", a, b] => Node::Mul(self.number(a, line)?, self.number(b, line)?),
@@ -241,13 +243,11 @@ impl Reader<'_> {
     }
 
     fn called(&mut self, function: &str, arguments: &[&str], line: &Line<'_>) -> Result<Node, Refusal> {
-        let place = self.functions.get(function).copied();
-        let of = |reader: &Self, n: usize| reader.number(arguments[n], line);
-        match (place, arguments.len()) {
-            (Some(0), 1) => Ok(Node::Call(Function::Sin, of(self, 0)?)),
-            (Some(1), 1) => Ok(Node::Call(Function::Cos, of(self, 0)?)),
-            (Some(2), 1) => Ok(Node::Call(Function::Tanh, of(self, 0)?)),
-            (Some(3), 2) => Ok(Node::Atan2(of(self, 0)?, of(self, 1)?)),
+        let function = self.functions.get(function).and_then(|&place| Function::ALL.get(place));
+        match (function, arguments) {
+            (Some(function), [.., last]) if arguments.len() == function.arity() => {
+                Ok(Node::Call(*function, [self.number(arguments[0], line)?, self.number(last, line)?]))
+            }
             _ => Err(refused(line)),
         }
     }

@@ -76,15 +76,13 @@ impl Reader<'_> {
     fn call(&mut self, call: &ExprMethodCall) -> Result<Id, Refusal> {
         let receiver = self.expression(&call.receiver)?;
         let arguments = call.args.iter().map(|a| self.expression(a)).collect::<Result<Vec<_>, _>>()?;
-        let function = match (call.method.to_string().as_str(), arguments.as_slice()) {
-            ("atan2", &[x]) => return Ok(self.push(Node::Atan2(receiver, x), call.method.span())),
-            ("sin", []) => Function::Sin,
-            ("cos", []) => Function::Cos,
-            ("tanh", []) => Function::Tanh,
-            ("sqrt", []) => Function::Sqrt,
-            (name, _) => return Err(Refusal::at(call.method.span(), format!("`{name}`: no such function"))),
+        let name = call.method.to_string();
+        let function = Function::named(&name).filter(|function| function.arity() == 1 + arguments.len());
+        let Some(function) = function else {
+            return Err(Refusal::at(call.method.span(), format!("`{name}`: no such function")));
         };
-        Ok(self.push(Node::Call(function, receiver), call.method.span()))
+        let operands = [receiver, arguments.first().copied().unwrap_or(receiver)];
+        Ok(self.push(Node::Call(function, operands), call.method.span()))
     }
 
     /// `table0[1]`, `accelerations[2]`, `self.derived[3]`, `kept0[i + 1][2]`.

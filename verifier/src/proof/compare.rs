@@ -7,7 +7,7 @@ use crate::field::{Field, Precision};
 use crate::interpreter::{self, DivisionByZero, Given};
 use crate::joints::JointLayout;
 use crate::module::{Module, is_on_constraints, source_of_accelerations, takes_any_accelerations};
-use crate::program::Node;
+use crate::program::{Function, Node};
 use crate::seed::Seed;
 use std::collections::HashMap;
 
@@ -53,7 +53,7 @@ impl<const L: usize> Decider<'_, L> {
     /// The same in 384 bits, where the angle of a point is known to be that of any positive multiple of it.
     fn agree_in_floats(&self, modules: [&Module; 2], function: &str, seed: Seed) -> bool {
         let turns = |module: &Module| {
-            module.programs[function].nodes.iter().any(|node| matches!(node, Node::Atan2(..)))
+            module.programs[function].nodes.iter().any(|node| matches!(node, Node::Call(Function::Atan2, _)))
         };
         let (precision, mut random) = (Precision::new(), seed.numbers(0));
         let draw = point::real(self.model, modules[0], &precision, &mut random);

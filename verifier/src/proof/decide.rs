@@ -16,7 +16,7 @@ use crate::atoms::{Drawn, Elementary};
 use crate::field::{Field, Modular, Precision, Prime, Real};
 use crate::interpreter::DivisionByZero;
 use crate::module::Module;
-use crate::program::{Id, Node};
+use crate::program::{Function, Id, Node};
 use crate::seed::Seed;
 use chacha20::ChaCha8Rng;
 use gyro_model::Model;
@@ -222,7 +222,11 @@ impl<'a, const L: usize> Decider<'a, L> {
         let nodes = statements.formulas.program.nodes.iter().zip(&reach);
         let on_line: Vec<Id> = nodes
             .filter_map(|(node, reached)| match *node {
-                Node::Atan2(y, x) if *reached && values[y].as_ref().is_some_and(Field::is_zero) => Some(x),
+                Node::Call(Function::Atan2, [y, x])
+                    if *reached && values[y].as_ref().is_some_and(Field::is_zero) =>
+                {
+                    Some(x)
+                }
                 _ => None,
             })
             .collect();

@@ -188,7 +188,7 @@ impl<'a> Statements<'a> {
     /// point.
     fn doublings(&self) -> Option<u32> {
         let angles = self.formulas.program.nodes.iter().filter_map(|node| match *node {
-            Node::Call(Function::Sin | Function::Cos, angle) => Some(angle),
+            Node::Call(Function::Sin | Function::Cos, [angle, _]) => Some(angle),
             _ => None,
         });
         let angles: BTreeSet<Id> = angles.collect();
@@ -217,9 +217,8 @@ impl<'a> Statements<'a> {
         let largest = residuals.iter().map(whole).collect::<Option<Vec<f64>>>()?;
         let largest = largest.into_iter().fold(0.0, f64::max);
         let nodes = self.formulas.program.nodes.iter().zip(&reach);
-        let atoms = nodes.filter(|(node, reached)| {
-            **reached && matches!(node, Node::Call(..) | Node::Atan2(..) | Node::Curve { .. })
-        });
+        let atoms =
+            nodes.filter(|(node, reached)| **reached && matches!(node, Node::Call(..) | Node::Curve { .. }));
         let arguments: Vec<Id> = atoms.flat_map(|(node, _)| node.operands()).collect();
         let all = arguments.iter().filter_map(whole).fold(f64::NEG_INFINITY, sum_log2);
         let collisions = all + (arguments.len() as f64).log2() + f64::from(WAYS_TO_MEET).log2();
@@ -232,7 +231,7 @@ impl<'a> Statements<'a> {
         let nodes = self.formulas.program.nodes.iter().enumerate();
         let roots = nodes.filter(|(id, _)| reach[*id]);
         let root = |(id, node): (Id, &Node)| match *node {
-            Node::Call(Function::Sqrt, radicand) => Some((id, radicand)),
+            Node::Call(Function::Sqrt, [radicand, _]) => Some((id, radicand)),
             _ => None,
         };
         roots.filter_map(root).collect()

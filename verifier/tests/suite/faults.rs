@@ -80,8 +80,8 @@ fn of_node(id: Id, node: &Node) -> Vec<Fault> {
         Node::Div(..) => vec![Fault::SwappedOperands(id), Fault::DroppedOperand(id)],
         Node::Neg(_) => vec![Fault::Sign(id)],
         Node::Read(_) => vec![Fault::Index(id)],
+        Node::Call(function, _) if function.arity() == 2 => vec![Fault::SwappedOperands(id)],
         Node::Call(..) => vec![Fault::Function(id)],
-        Node::Atan2(..) => vec![Fault::SwappedOperands(id)],
         Node::Curve { .. } => vec![Fault::Index(id)],
         Node::Constant(_) => Vec::new(),
     }
@@ -142,20 +142,15 @@ fn change_node(program: &mut Program, fault: &Fault) -> Option<()> {
         (Fault::Sign(_), Node::Sub(a, b)) => Node::Add(a, b),
         (Fault::SwappedOperands(_), Node::Sub(a, b)) => Node::Sub(b, a),
         (Fault::SwappedOperands(_), Node::Div(a, b)) => Node::Div(b, a),
-        (Fault::SwappedOperands(_), Node::Atan2(a, b)) => Node::Atan2(b, a),
+        (Fault::SwappedOperands(_), Node::Call(function, [a, b])) => Node::Call(function, [b, a]),
         (Fault::Operation(_), Node::Mul(a, b)) => Node::Add(a, b),
         (Fault::Index(_), Node::Read(source)) => Node::Read(other(source)?),
         (Fault::Index(_), Node::Curve { table, order, time }) => {
             Node::Curve { table, order: (order + 1) % 3, time }
         }
         (Fault::Neighbour(_), node) => neighbour(node)?,
-        (Fault::Function(_), Node::Call(function, a)) => Node::Call(
-            match function {
-                Function::Sin => Function::Cos,
-                Function::Cos | Function::Tanh | Function::Sqrt => Function::Sin,
-            },
-            a,
-        ),
+        (Fault::Function(_), Node::Call(Function::Sin, a)) => Node::Call(Function::Cos, a),
+        (Fault::Function(_), Node::Call(_, a)) => Node::Call(Function::Sin, a),
         (Fault::Sign(_), Node::Neg(a))
         | (Fault::DroppedOperand(_), Node::Add(a, _) | Node::Sub(a, _) | Node::Mul(a, _) | Node::Div(a, _)) =>
         {
@@ -219,26 +214,12 @@ fn rewritten(program: &Program, replace: impl Fn(&mut Program, usize) -> Option<
             _ => None,
         };
         changed |= replaced.is_some();
-        let id = replaced.unwrap_or_else(|| new.push(moved(*node, &|id| places[id]), line));
+        let id = replaced.unwrap_or_else(|| new.push(node.with_operands(|id| places[id]), line));
         places.push(id);
     }
     new.results = program.results.iter().map(|&id| places[id]).collect();
     new.places = program.places.clone();
     changed.then_some(new)
-}
-
-fn moved(node: Node, place: &dyn Fn(Id) -> Id) -> Node {
-    match node {
-        Node::Constant(_) | Node::Read(_) => node,
-        Node::Add(a, b) => Node::Add(place(a), place(b)),
-        Node::Sub(a, b) => Node::Sub(place(a), place(b)),
-        Node::Mul(a, b) => Node::Mul(place(a), place(b)),
-        Node::Div(a, b) => Node::Div(place(a), place(b)),
-        Node::Atan2(a, b) => Node::Atan2(place(a), place(b)),
-        Node::Neg(a) => Node::Neg(place(a)),
-        Node::Call(function, a) => Node::Call(function, place(a)),
-        Node::Curve { table, order, time } => Node::Curve { table, order, time: place(time) },
-    }
 }
 
 fn negated_read(program: &mut Program, k: usize) -> Id {
@@ -255,7 +236,7 @@ fn no_read(program: &mut Program, k: usize) -> Id {
 fn forget_term(gamma: &mut Program, phi_q: &Program, pattern: &[(usize, usize)], n: usize) {
     let offset = gamma.nodes.len();
     for (node, &line) in phi_q.nodes.iter().zip(&phi_q.lines) {
-        gamma.push(moved(*node, &|id| id + offset), line);
+        gamma.push(node.with_operands(|id| id + offset), line);
     }
     for (&value, &(row, column)) in phi_q.results.iter().zip(pattern) {
         if column % 7 < 3 || row >= gamma.results.len() {

@@ -35,18 +35,7 @@ enum Vanishing {
 fn append(program: &mut Program, other: &Program) -> Vec<Id> {
     let mut places: Vec<Id> = Vec::new();
     for node in &other.nodes {
-        let node = match *node {
-            Node::Add(a, b) => Node::Add(places[a], places[b]),
-            Node::Sub(a, b) => Node::Sub(places[a], places[b]),
-            Node::Mul(a, b) => Node::Mul(places[a], places[b]),
-            Node::Div(a, b) => Node::Div(places[a], places[b]),
-            Node::Neg(a) => Node::Neg(places[a]),
-            Node::Call(function, a) => Node::Call(function, places[a]),
-            Node::Atan2(a, b) => Node::Atan2(places[a], places[b]),
-            Node::Curve { table, order, time } => Node::Curve { table, order, time: places[time] },
-            leaf => leaf,
-        };
-        places.push(program.push(node, 1));
+        places.push(program.push(node.with_operands(|id| places[id]), 1));
     }
     places
 }
@@ -338,7 +327,7 @@ fn removable_singularities_are_found() {
         let mut divisor = program.push(Node::Read(source(&zero)), 1);
         for (call, known) in [(".sin()", Function::Sin)] {
             if zero.ends_with(call) {
-                divisor = program.push(Node::Call(known, divisor), 1);
+                divisor = program.push(Node::Call(known, [divisor; 2]), 1);
             }
         }
         let last = program.results.len() - 1;

@@ -374,8 +374,8 @@ fn turned(program: &Program) -> Program {
     for (node, &line) in program.nodes.iter().zip(&program.lines) {
         let node = node.with_operands(|id| places[id]);
         let node = match node {
-            Node::Atan2(y, x) => {
-                Node::Atan2(turned.push(Node::Neg(y), line), turned.push(Node::Neg(x), line))
+            Node::Call(function, operands) if function.arity() == 2 => {
+                Node::Call(function, operands.map(|id| turned.push(Node::Neg(id), line)))
             }
             node => node,
         };

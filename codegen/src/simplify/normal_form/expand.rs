@@ -5,19 +5,9 @@ use super::polynomial::{Literal, Monomial, Polynomial};
 use crate::expr::constant::Constant;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
+use gyro_program::elementary::{Function, Parity, Signature};
 use rustc_hash::FxHashMap as HashMap;
 use std::rc::Rc;
-
-/// A function that is not a polynomial.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Function {
-    Recip,
-    Sqrt,
-    Sin,
-    Cos,
-    Tanh,
-    Atan2,
-}
 
 /// What a literal stands for.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -141,13 +131,11 @@ impl<'a> Expansion<'a> {
             Node::Mul(a, b) => self.product(&self.memo[&a].clone(), &self.memo[&b].clone())?,
             Node::Neg(a) => self.memo[&a].scale(&Constant::integer(-1)),
             Node::Recip(a) => self.reciprocal(&self.memo[&a].clone())?,
-            Node::Sqrt(a) => self.root(&self.memo[&a].clone()),
-            Node::Sin(a) => self.odd(Function::Sin, a),
-            Node::Tanh(a) => self.odd(Function::Tanh, a),
-            Node::Cos(a) => self.cosine(a),
-            Node::Atan2(y, x) => {
-                let operands = [y, x].map(|operand| Polynomial::clone(&self.memo[&operand]));
-                self.function(Function::Atan2, operands.to_vec())
+            Node::Call(Function::Sqrt, [a, _]) => self.root(&self.memo[&a].clone()),
+            Node::Call(function, [a, _]) if function.arity() == 1 => self.function_of_one(function, a),
+            Node::Call(function, operands) => {
+                let operands = operands.map(|operand| Polynomial::clone(&self.memo[&operand]));
+                self.function(function, operands.to_vec())
             }
         };
         Some(Rc::new(polynomial))
@@ -186,27 +174,18 @@ impl<'a> Expansion<'a> {
         Polynomial::literal(literal)
     }
 
-    /// f(−x) = −f(x): the operand's first coefficient is made positive.
-    fn odd(&mut self, function: Function, operand: ExprId) -> Polynomial {
-        let operand = self.memo[&operand].clone();
-        match operand.leading() {
-            None => Polynomial::default(),
-            Some(leading) if leading.is_negative() => {
-                let minus = Constant::integer(-1);
-                self.function(function, vec![operand.scale(&minus)]).scale(&minus)
+    /// f(−x) = −f(x) or f(x): the operand's first coefficient is made positive.
+    fn function_of_one(&mut self, function: Function, operand: ExprId) -> Polynomial {
+        let (operand, minus) = (self.memo[&operand].clone(), Constant::integer(-1));
+        let Signature { parity, at_zero, .. } = function.signature();
+        match (operand.leading(), at_zero) {
+            (None, Some(0)) => Polynomial::default(),
+            (None, Some(value)) => Polynomial::term(Constant::integer(value), Monomial::one()),
+            (Some(leading), _) if leading.is_negative() && parity != Parity::Neither => {
+                let value = self.function(function, vec![operand.scale(&minus)]);
+                if parity == Parity::Odd { value.scale(&minus) } else { value }
             }
-            Some(_) => self.function(function, vec![Polynomial::clone(&operand)]),
-        }
-    }
-
-    fn cosine(&mut self, operand: ExprId) -> Polynomial {
-        let operand = self.memo[&operand].clone();
-        match operand.leading() {
-            None => Polynomial::term(Constant::integer(1), Monomial::one()),
-            Some(leading) if leading.is_negative() => {
-                self.function(Function::Cos, vec![operand.scale(&Constant::integer(-1))])
-            }
-            Some(_) => self.function(Function::Cos, vec![Polynomial::clone(&operand)]),
+            _ => self.function(function, vec![Polynomial::clone(&operand)]),
         }
     }
 

@@ -18,6 +18,7 @@ use crate::expr::schedule::Operations;
 use crate::expr::symbol::Symbol;
 use expand::Expansion;
 use factor::factor;
+use gyro_program::elementary::Function;
 use polynomial::Polynomial;
 use rescale::{rescale, rescale_pairs};
 use std::collections::{HashMap, HashSet};
@@ -80,7 +81,8 @@ pub fn normal_form_of(
 /// link. It is small where a difference vanishes; as a polynomial, whose terms are not, it would have no digits left
 /// there.
 fn loses_digits(graph: &Graph, roots: &[ExprId]) -> bool {
-    let is_changing_root = |id: ExprId| matches!(graph.node(id), Node::Sqrt(_)) && graph.is_changing(id);
+    let is_changing_root =
+        |id: ExprId| matches!(graph.node(id), Node::Call(Function::Sqrt, _)) && graph.is_changing(id);
     graph.reachable(roots).into_iter().any(is_changing_root)
 }
 
@@ -123,7 +125,7 @@ fn relations(graph: &mut Graph, unit: &[Vec<ExprId>], roots: &[ExprId]) -> Vec<V
     let reachable: HashSet<ExprId> = graph.reachable(roots).into_iter().collect();
     let mut relations = unit.to_vec();
     for id in graph.reachable(roots) {
-        if let Node::Cos(operand) = *graph.node(id) {
+        if let Node::Call(Function::Cos, [operand, _]) = *graph.node(id) {
             relations.push(vec![id, graph.sin(operand)]);
         }
     }

@@ -1,7 +1,6 @@
 //! Where constant factors stand: a sum that has a name can be multiplied by a constant if what uses it is divided by
 //! it. Each is given the scale at which the fewest terms have a coefficient.
 
-use super::expand::Function;
 use super::polynomial::Literal;
 use super::sums::{Ratio, Scale, Scales, SumId, Sums, Term, Value};
 use std::collections::BTreeMap;
@@ -80,10 +79,10 @@ fn free(system: &Sums) -> Vec<Free> {
     for (literal, value) in system.literals.iter().enumerate() {
         match value {
             Value::Sum(sum) => literals.entry(*sum).or_default().push((literal, 1)),
-            Value::Function(Function::Recip, operands) => {
-                literals.entry(operands[0]).or_default().push((literal, -1));
+            Value::Recip(of) => {
+                literals.entry(*of).or_default().push((literal, -1));
                 // The reciprocal of a multiple of a sum is one of that sum too.
-                if let Some(sum) = multiple_of(system, operands[0]) {
+                if let Some(sum) = multiple_of(system, *of) {
                     literals.entry(sum).or_default().push((literal, -1));
                 }
             }
@@ -126,8 +125,7 @@ fn multiple_of(system: &Sums, sum: SumId) -> Option<SumId> {
 
 /// Whether a sum is a multiple of a literal and is what something is divided by.
 fn is_operand(system: &Sums, sum: SumId, literal: Literal) -> bool {
-    let divided =
-        |value: &Value| matches!(value, Value::Function(Function::Recip, operands) if operands[0] == sum);
+    let divided = |value: &Value| matches!(value, Value::Recip(of) if *of == sum);
     matches!(&system.sums[sum][..], [term] if term.monomial.degree() == 1 && term.monomial.exponent(literal) == 1)
         && system.literals.iter().any(divided)
 }

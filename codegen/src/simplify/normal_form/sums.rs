@@ -1,10 +1,11 @@
 //! A system of sums of products that use each other: between polynomials and a program.
 
-use super::expand::{Atom, Expansion, Function};
+use super::expand::{Atom, Expansion};
 use super::polynomial::{Literal, Monomial, Polynomial};
 use crate::expr::constant::Constant;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
+use gyro_program::elementary::Function;
 use rustc_hash::FxHashMap as HashMap;
 use std::rc::Rc;
 
@@ -122,6 +123,7 @@ pub type SumId = usize;
 pub enum Value {
     Symbol(Symbol),
     Function(Function, Vec<SumId>),
+    Recip(SumId),
     Sum(SumId),
 }
 
@@ -186,8 +188,8 @@ impl Lowering<'_> {
             return place;
         }
         let value = match (&self.atoms[literal], divided) {
-            (Atom::Sum(sum), true) => Value::Function(Function::Recip, vec![self.sum(sum)]),
-            (_, true) => Value::Function(Function::Recip, vec![self.sum(&Polynomial::literal(literal))]),
+            (Atom::Sum(sum), true) => Value::Recip(self.sum(sum)),
+            (_, true) => Value::Recip(self.sum(&Polynomial::literal(literal))),
             (Atom::Symbol(symbol), false) => Value::Symbol(*symbol),
             (Atom::Function(function, operands), false) => {
                 Value::Function(*function, operands.iter().map(|operand| self.sum(operand)).collect())
@@ -240,23 +242,16 @@ impl Building<'_> {
         let built = match &self.system.literals[literal] {
             Value::Symbol(symbol) => self.graph.symbol(*symbol),
             Value::Sum(sum) => self.sum(*sum),
+            Value::Recip(sum) => {
+                let sum = self.sum(*sum);
+                self.graph.recip(sum)
+            }
             Value::Function(function, operands) => {
                 let operands: Vec<_> = operands.iter().map(|&operand| self.sum(operand)).collect();
-                self.apply(*function, &operands)
+                self.graph.call(*function, [operands[0], operands[operands.len() - 1]])
             }
         };
         self.literals.insert(literal, built);
         built
-    }
-
-    fn apply(&mut self, function: Function, operands: &[ExprId]) -> ExprId {
-        match function {
-            Function::Recip => self.graph.recip(operands[0]),
-            Function::Sqrt => self.graph.sqrt(operands[0]),
-            Function::Sin => self.graph.sin(operands[0]),
-            Function::Cos => self.graph.cos(operands[0]),
-            Function::Tanh => self.graph.tanh(operands[0]),
-            Function::Atan2 => self.graph.atan2(operands[0], operands[1]),
-        }
     }
 }

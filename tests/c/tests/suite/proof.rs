@@ -3,6 +3,7 @@
 use gyro_codegen::Functions;
 use gyro_export::{Exported, Precision};
 use gyro_model::Model;
+use gyro_program::elementary::Function;
 use gyro_verifier::same_in_c;
 use std::fs;
 use std::path::Path;
@@ -46,6 +47,28 @@ fn the_text_is_what_was_proved() {
         let case = Case::of(page, &functions, precision);
         let n = case.read_back(&case.exported.source).unwrap_or_else(|words| panic!("{page}: {words}"));
         assert!(n > 8, "{page}: {n} functions");
+    }
+}
+
+/// In the place of the hyperbolic tangent, whether model files reach the function or not.
+#[test]
+fn every_function_of_one_operand_is_read_back() {
+    let mut case = Case::of("tests/models/friction.toml", &Functions::of_solvers(), Precision::F64);
+    let code = case.module.code.clone();
+    for (function, precision) in
+        Function::ALL.into_iter().flat_map(|of| [(of, Precision::F64), (of, Precision::F32)])
+    {
+        if function.arity() == 1 {
+            case.module.code = code.replace(".tanh()", &format!(".{}()", function.name()));
+            case.exported = gyro_export::c(&case.model, &case.module.code, precision).expect("C");
+            let name = function.signature().in_c[precision as usize];
+            assert!(
+                case.exported.source.matches(&format!("{name}(")).count() > 1,
+                "{name} is brought and called"
+            );
+            let n = case.read_back(&case.exported.source).unwrap_or_else(|words| panic!("{name}: {words}"));
+            assert!(n > 8, "{name}: {n} functions");
+        }
     }
 }
 

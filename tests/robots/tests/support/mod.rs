@@ -1,7 +1,7 @@
 //! Double-double as a number type of generated mechanisms.
 
 use gyro_reference::DoubleDouble;
-use gyro_sim::{Scalar, spline};
+use gyro_sim::{Elementary, Scalar, spline};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number of 106 bits.
@@ -17,6 +17,29 @@ impl Fine {
     fn refined(near: f64, correction: impl FnOnce(DoubleDouble) -> DoubleDouble) -> Self {
         let near = DoubleDouble::new(near);
         Self(near + correction(near))
+    }
+
+    fn root(self) -> Self {
+        let near = self.to_f64().sqrt();
+        if near == 0.0 {
+            return Self::constant(0.0);
+        }
+        Self::refined(near, |root| (self.0 - root * root) / DoubleDouble::new(2.0 * near))
+    }
+
+    /// By the series of the exponential function at 1/64 of the argument, up to 1.
+    fn hyperbolic_tangent(self) -> Self {
+        let one = DoubleDouble::new(1.0);
+        let size = self.to_f64().abs();
+        if size > 40.0 {
+            return Self::constant(self.to_f64().signum());
+        }
+        let part = self.0 * DoubleDouble::new(2.0 / 1024.0);
+        let mut power = (1..25).rev().fold(one, |sum, n| one + sum * part / DoubleDouble::new(f64::from(n)));
+        for _ in 0..10 {
+            power = power * power;
+        }
+        Self((power - one) / (power + one))
     }
 }
 
@@ -60,42 +83,18 @@ impl Scalar for Fine {
         Self(DoubleDouble::new(value))
     }
 
-    fn sqrt(self) -> Self {
-        let near = self.to_f64().sqrt();
-        if near == 0.0 {
-            return Self::constant(0.0);
+    fn call(function: Elementary, [x, y]: [Self; 2]) -> Self {
+        match function {
+            Elementary::Sqrt => x.root(),
+            Elementary::Sin => Self(x.0.sin_cos().0),
+            Elementary::Cos => Self(x.0.sin_cos().1),
+            Elementary::Tanh => x.hyperbolic_tangent(),
+            Elementary::Atan2 => Self::refined(x.to_f64().atan2(y.to_f64()), |angle| {
+                let (sine, cosine) = angle.sin_cos();
+                (x.0 * cosine - y.0 * sine) / (y.0 * cosine + x.0 * sine)
+            }),
+            other => unreachable!("{other:?} is in no robot"),
         }
-        Self::refined(near, |root| (self.0 - root * root) / DoubleDouble::new(2.0 * near))
-    }
-
-    fn sin(self) -> Self {
-        Self(self.0.sin_cos().0)
-    }
-
-    fn cos(self) -> Self {
-        Self(self.0.sin_cos().1)
-    }
-
-    /// By the series of the exponential function at 1/64 of the argument, up to 1.
-    fn tanh(self) -> Self {
-        let one = DoubleDouble::new(1.0);
-        let size = self.to_f64().abs();
-        if size > 40.0 {
-            return Self::constant(self.to_f64().signum());
-        }
-        let part = self.0 * DoubleDouble::new(2.0 / 1024.0);
-        let mut power = (1..25).rev().fold(one, |sum, n| one + sum * part / DoubleDouble::new(f64::from(n)));
-        for _ in 0..10 {
-            power = power * power;
-        }
-        Self((power - one) / (power + one))
-    }
-
-    fn atan2(self, x: Self) -> Self {
-        Self::refined(self.to_f64().atan2(x.to_f64()), |angle| {
-            let (sine, cosine) = angle.sin_cos();
-            (self.0 * cosine - x.0 * sine) / (x.0 * cosine + self.0 * sine)
-        })
     }
 
     fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {

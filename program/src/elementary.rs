@@ -1,0 +1,96 @@
+//! The elementary functions that programs call: their names, and what signs and zeros do to them. Their values and
+//! derivatives are with whoever computes with them.
+
+/// An elementary function. Orders that depend on functions follow the one of this list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Function {
+    /// Square root.
+    Sqrt,
+    /// Sine.
+    Sin,
+    /// Cosine.
+    Cos,
+    /// Hyperbolic tangent.
+    Tanh,
+    /// The angle of the point (second operand, first operand), in (−π, π].
+    Atan2,
+}
+
+/// What becomes of a function when the sign of its first operand changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parity {
+    /// Its sign changes.
+    Odd,
+    /// Nothing.
+    Even,
+    /// Nothing that is known.
+    Neither,
+}
+
+/// A row of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Signature {
+    /// Its name in Rust.
+    pub name: &'static str,
+    /// Its names in C, of `double` and of `float`.
+    pub in_c: [&'static str; 2],
+    /// How many operands it has: one or two.
+    pub arity: usize,
+    /// What the sign of its first operand does.
+    pub parity: Parity,
+    /// Its value where its only operand is zero, if that is a whole number.
+    pub at_zero: Option<i64>,
+}
+
+impl Function {
+    /// All functions, in their order.
+    pub const ALL: [Self; 5] = [Self::Sqrt, Self::Sin, Self::Cos, Self::Tanh, Self::Atan2];
+
+    /// Its row of the table.
+    #[rustfmt::skip]
+    pub const fn signature(self) -> Signature {
+        use Parity::{Even, Neither, Odd};
+        let (name, in_c, arity, parity, at_zero) = match self {
+            Self::Sqrt => ("sqrt", ["sqrt", "sqrtf"], 1, Neither, Some(0)),
+            Self::Sin => ("sin", ["libm_sin", "gyro_sinf"], 1, Odd, Some(0)),
+            Self::Cos => ("cos", ["libm_cos", "gyro_cosf"], 1, Even, Some(1)),
+            Self::Tanh => ("tanh", ["libm_tanh", "libm_tanhf"], 1, Odd, Some(0)),
+            Self::Atan2 => ("atan2", ["libm_atan2", "libm_atan2f"], 2, Odd, None),
+        };
+        Signature { name, in_c, arity, parity, at_zero }
+    }
+
+    /// Its name in Rust.
+    pub const fn name(self) -> &'static str {
+        self.signature().name
+    }
+
+    /// How many operands it has.
+    pub const fn arity(self) -> usize {
+        self.signature().arity
+    }
+
+    /// The function of a name in Rust.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|function| function.name() == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_those_of_their_functions() {
+        for (place, function) in Function::ALL.into_iter().enumerate() {
+            let Signature { name, in_c: [double, single], arity, parity, at_zero } = function.signature();
+            assert_eq!(place, function as usize, "{name}");
+            assert_eq!(name, format!("{function:?}").to_lowercase());
+            assert!(double.ends_with(name) && single.ends_with(&format!("{name}f")), "{name}");
+            assert!((1..=2).contains(&arity), "{name}");
+            // What is odd is zero at zero.
+            assert!(arity == 2 || parity != Parity::Odd || at_zero == Some(0), "{name}");
+            assert_eq!(Function::named(name), Some(function));
+        }
+    }
+}
