@@ -111,6 +111,7 @@ pub mod correct;
 mod dual;
 mod euler_parameters;
 pub mod events;
+mod floats;
 pub mod fused;
 #[cfg(feature = "generated")]
 pub mod generated;

@@ -43,7 +43,11 @@ const STAGES: [(&str, &str); 5] = [
         "codegen",
         "groups expr simplify effort derive solve joint_space equations kernels selection repeat tape scheduled emit",
     ),
-    ("gyro-sim", "TODO"),
+    (
+        "gyro-sim",
+        "fused spline scalar charts sine floats admissible apart wire euler_parameters contract integrate violation turns \
+         pivoting dual correct solver events contact generated joint_partition lanes sampled",
+    ),
     (
         "runner",
         "approach schedule offers advice batch input touch path control formula watch failure pivots motion forecast \
