@@ -10,8 +10,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates whose modules are looked at.
-const CRATES: [&str; 15] = [
+const CRATES: [&str; 16] = [
     "model",
+    "program",
     "codegen",
     "gyro-sim",
     "assembled",
