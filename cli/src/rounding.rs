@@ -3,8 +3,8 @@
 
 use crate::failure::Failure;
 use gyro_assembled::{Careful, Dense};
-use gyro_codegen::Kernel;
 use gyro_model::Model;
+use gyro_program::Kernel;
 use gyro_sim::{Dynamics, Kinematics, Projection, Scalar};
 use gyro_verifier::field::{Precision, Real};
 use gyro_verifier::module::Module;
@@ -152,7 +152,7 @@ fn of_assembled<M>(
 where
     M: Kinematics<Scalar = f64> + Dynamics + Projection,
 {
-    let kernel = kernel(&row.function)?;
+    let kernel = Kernel::named(&row.function)?;
     // A runtime-assembled model has no u̇: its v̇ stands beside it.
     let counterpart = match kernel {
         Kernel::JointAccelerationsAt => Kernel::CorrectedAccelerations.name(),
@@ -168,11 +168,6 @@ where
         error(&exact[..of_both], &computed[..of_both], DOUBLE_DIGITS)
     });
     Spread::of(errors.collect())
-}
-
-/// What a function of a module computes.
-fn kernel(function: &str) -> Option<Kernel> {
-    Kernel::all().find(|kernel| kernel.name() == function)
 }
 
 /// What a runtime-assembled model gives for a kernel at a maximal state; `None` if it has no such function, or its
@@ -244,39 +239,7 @@ where
             let energy = assembled.energy(t, &y);
             vec![energy.kinetic, energy.potential]
         }
-        Kernel::ParameterSetup
-        | Kernel::ReadJoints
-        | Kernel::Outputs
-        | Kernel::ChartVectors
-        | Kernel::NewtonStep
-        | Kernel::SolveVelocities
-        | Kernel::JointAccelerations
-        | Kernel::JointDerivative
-        | Kernel::ToMaximal
-        | Kernel::ToJoints
-        | Kernel::CorrectedSolution
-        | Kernel::LoopClosure
-        | Kernel::ClosureDistances
-        | Kernel::ClosePositions
-        | Kernel::CloseVelocities
-        | Kernel::JointJacobian
-        | Kernel::JointInputJacobian
-        | Kernel::JointParameterJacobian
-        | Kernel::JointOutputs
-        | Kernel::OutputsByState
-        | Kernel::OutputsByAccelerations
-        | Kernel::OutputsByInputs
-        | Kernel::OutputsByParameters
-        | Kernel::FrameJacobians
-        | Kernel::FrameBiases
-        | Kernel::InverseDynamics
-        | Kernel::BiasForces
-        | Kernel::GravityForces
-        | Kernel::MassMatrix
-        | Kernel::MassFactor
-        | Kernel::InverseDerivatives
-        | Kernel::ForwardDerivatives
-        | Kernel::Regressor => return None,
+        _ => return None,
     })
 }
 

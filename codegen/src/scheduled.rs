@@ -7,10 +7,11 @@ use crate::expr::graph::{ExprId, Node};
 use crate::expr::symbol::Symbol;
 use crate::groups::Functions;
 use crate::joint_space::JointSpace;
-use crate::kernels::{Kernel, Kernels};
+use crate::kernels::Kernels;
 use crate::repeat::{self, Local, Repetition};
 use crate::tape;
 use gyro_model::{Attachment, JointCoordinate, Model, Spline, Start};
+use gyro_program::{Counts, Kernel};
 use std::collections::BTreeMap;
 
 /// A number that a kernel reads.
@@ -101,8 +102,6 @@ pub struct JointForm {
     pub closure_rows: Vec<usize>,
     /// The joint state at the start.
     pub start: Vec<f64>,
-    /// Lengths of ∂f/∂x and of ∂f/∂(inputs), if they are asked for.
-    pub jacobian: Option<[usize; 2]>,
 }
 
 /// A mechanism as data.
@@ -112,18 +111,8 @@ pub struct Scheduled {
     pub functions: Functions,
     /// Its kernels. What computes nothing is not there.
     pub kernels: BTreeMap<Kernel, ScheduledKernel>,
-    /// The number of bodies that have coordinates.
-    pub n_bodies: usize,
-    /// The number of joint rows.
-    pub n_rows: usize,
-    /// Length of the maximal state.
-    pub n_state: usize,
-    /// Number of raw joint coordinates.
-    pub n_readings: usize,
-    /// Number of outputs.
-    pub n_outputs: usize,
-    /// Length of what [`Kernel::Accelerations`] gives.
-    pub n_accelerations: usize,
+    /// How many things of each kind the mechanism has.
+    pub counts: Counts,
     /// How the partition goes, where it is asked for.
     pub partition: PartitionForm,
     /// Row and column of each number of Φ_q.
@@ -149,12 +138,7 @@ impl Scheduled {
         Self {
             functions: e.functions.clone(),
             kernels: kernels.iter().map(|(kernel, _)| (kernel, scheduled(e, kernels, kernel))).collect(),
-            n_bodies: e.n_moving_bodies(),
-            n_rows: e.n_rows,
-            n_state: e.n_state(),
-            n_readings: e.readings.len(),
-            n_outputs: e.outputs.len(),
-            n_accelerations: e.solved.roots.len(),
+            counts: e.counts(),
             partition: e.partition_form(),
             phi_q_pattern: pattern(&e.phi_q),
             phi_pi_pattern: pattern(&e.phi_pi),
@@ -173,16 +157,11 @@ impl JointForm {
     fn of(equations: &Equations, space: &JointSpace) -> Self {
         let work = equations.power.map(|_| 0.0);
         let start: Vec<f64> = space.start.iter().copied().chain(work).collect();
-        let by_inputs = |jacobian: &crate::joint_space::Jacobian| jacobian.by_inputs.roots.len();
         Self {
             n_coordinates: space.layout.n_coordinates,
             n_rates: space.layout.n_rates,
             places: places(equations.model, space),
             closure_rows: space.closure_rows.clone(),
-            jacobian: space
-                .jacobian
-                .as_ref()
-                .map(|jacobian| [start.len() * start.len(), by_inputs(jacobian)]),
             start,
         }
     }

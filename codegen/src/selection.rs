@@ -1,7 +1,8 @@
 //! Functions by their names.
 
-use crate::groups::{Functions, Group};
-use crate::kernels::Kernel;
+use crate::groups::Functions;
+use gyro_program::Group;
+use gyro_program::Kernel;
 use std::fmt;
 
 /// A name that no function and no group has.

@@ -1,6 +1,7 @@
 //! A generated module as it is read back from its text: what stands in it, without what its functions compute.
 
 use crate::Error;
+use gyro_program::{Buffer, Group};
 use quote::ToTokens;
 use std::collections::BTreeMap;
 use syn::{Expr, Fields, FnArg, ImplItem, ImplItemFn, Item, ItemImpl, ItemMod, Lit, Stmt, Type, UnOp};
@@ -114,7 +115,7 @@ impl Module {
                 self.patterns.push((name.to_owned(), pairs));
             }
             // Buffers are the caller's.
-            name if name.contains("buffer") || name == "terms" || name == "output_slopes" => {}
+            name if Group::all().flat_map(Buffer::of).any(|buffer| buffer.function == name) => {}
             _ => self.functions.push(function),
         }
         Ok(())

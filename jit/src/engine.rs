@@ -1,6 +1,7 @@
 //! What computes the kernels of a mechanism.
 
 use gyro_codegen::{Argument, Kernel, Scheduled, Variable};
+use gyro_program::Space;
 use gyro_sim::Scalar;
 use std::fmt::{self, Debug};
 
@@ -112,12 +113,10 @@ impl Shape {
             arrays.push((n_work, shape.columns));
             n_work += shape.rows * shape.columns;
         }
-        let overwritten = match kernel {
-            // Its angles are those nearest to what is there.
-            Kernel::ToJoints | Kernel::ClosePositions | Kernel::CloseVelocities => Some(Argument::Joints),
-            Kernel::NewtonStep | Kernel::SolveVelocities => Some(Argument::State),
-            _ => None,
-        };
+        let overwritten = kernel.signature().overwritten().map(|space| match space {
+            Space::State => Argument::State,
+            _ => Argument::Joints,
+        });
         Self { arrays, n_work, overwritten }
     }
 

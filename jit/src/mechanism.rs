@@ -2,8 +2,9 @@
 
 use crate::description::{OwnedDescription, OwnedLayout, narrow};
 use crate::engine::{Arguments, Engine, Layout, reads_given};
-use gyro_codegen::{JointForm, Kernel, Scheduled};
+use gyro_codegen::{JointForm, Scheduled};
 use gyro_model::Model;
+use gyro_program::{Group, Kernel, Space};
 use gyro_sim::Scalar;
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -52,7 +53,6 @@ impl Shared {
             places: Vec::new(),
             closure_rows: Vec::new(),
             start: Vec::new(),
-            jacobian: None,
         });
         let values = |numbers: &[gyro_model::Parameter]| {
             numbers.iter().map(|p| gyro_model::to_f64(&p.value)).collect()
@@ -110,7 +110,7 @@ impl<T: Scalar, E: Engine<T>> InProcess<T, E> {
 
     /// Whether it has the derivatives of its joint form.
     pub fn has_jacobian(&self) -> bool {
-        self.shared.joint.jacobian.is_some()
+        self.has(Kernel::JointJacobian)
     }
 
     pub(crate) fn set_own_input(&mut self, index: usize, value: T) -> bool {
@@ -154,13 +154,15 @@ impl<T: Scalar, E: Engine<T>> InProcess<T, E> {
         vec![T::constant(0.0); len]
     }
 
-    /// Length of (s̈, ẇ') of all bodies.
-    pub(crate) fn n_velocities(&self) -> usize {
-        6 * self.shared.scheduled.n_bodies
+    /// How many numbers an array holds.
+    pub(crate) fn len(&self, space: Space) -> usize {
+        space.len(&self.shared.scheduled.counts)
     }
 
-    /// How many numbers a kernel gives.
-    pub(crate) fn n_results(&self, kernel: Kernel) -> usize {
-        self.shared.scheduled.kernels.get(&kernel).map_or(0, |kernel| kernel.tape.results.len())
+    /// An array of zeros; of functions that are not there an empty one.
+    pub(crate) fn buffer(&self, space: Space) -> Vec<T> {
+        let is_on_request = Group::on_request().chain([Group::Jacobian]).any(|group| group == space.group());
+        let is_there = !is_on_request || Kernel::of(space.group()).any(|kernel| self.has(kernel));
+        self.zeros(if is_there { self.len(space) } else { 0 })
     }
 }

@@ -63,7 +63,7 @@ const FAULTS: &[Fault] = &[
     fault("derive/joint_coordinate.rs", "bob", "«graph.mat_vec(&j.a, &joint.second.point)»);\n    let (point_i", "graph.transposed_vec(&j.a, &joint.second.point)"),
     fault("derive/joint_coordinate.rs", "slider", "let u = «system.graph.mat_vec(&a, u)»;", "*u"),
     // What vanishes where |p| = 1.
-    fault("kernels.rs", "free-body", "Source::Equations(|e| «e.phi.clone()».into())", "e.phi.iter().map(|_| Graph::ZERO).collect::<Vec<_>>()"),
+    fault("kernels.rs", "free-body", "Kernel::Phi => «e.phi.clone()».into()", "e.phi.iter().map(|_| Graph::ZERO).collect::<Vec<_>>()"),
     // Rotations and their rates.
     fault("expr/vector.rs", "bob", "let sum = self.dot(&[g[0][k], g[1][k], g[2][k]], w);\n            «self.mul(half, sum)»", "sum"),
     fault("expr/vector.rs", "bob", "[«[n1, e0, e3, n2]», [n2", "[n1, e0, n3, e2]"),

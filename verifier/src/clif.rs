@@ -13,6 +13,7 @@ use crate::nodes::Nodes;
 use crate::program::{Id, Node, Program, Source};
 use crate::refusal::Refusal;
 use gyro_model::Model;
+use gyro_program::{Given, Kernel, Signature, Space, State};
 use reader::{Arrays, run};
 use std::collections::HashMap;
 
@@ -92,6 +93,7 @@ impl Written {
         let (name, written) = (&function.key()[..], &self.module.written);
         let unknown = || Refusal::new(1, format!("the module has no function `{name}`"));
         let program = written.get(name).ok_or_else(unknown)?;
+        let signature = Kernel::named(name).ok_or_else(unknown)?.signature();
         let mut nodes = Nodes::default();
         let expected = nodes.of_program(program, &self.module);
         let arrays = Arrays {
@@ -100,9 +102,9 @@ impl Written {
             inputs: self.n_inputs,
             curves: self.module.tables.len(),
             tables: function.tables,
-            state: if is_of_joints(name) { Source::Joint } else { Source::State },
-            given: given(name),
-            before: before(name),
+            state: if signature.state == State::Joint { Source::Joint } else { Source::State },
+            given: given(signature),
+            before: before(signature),
         };
         let stored = run(&mut nodes, &arrays, function.text)
             .map_err(|refusal| Refusal { message: format!("`{name}`: {}", refusal.message), ..refusal })?;
@@ -166,45 +168,19 @@ impl Clif<'_> {
     }
 }
 
-/// Whether the state that a function reads is a joint state.
-fn is_of_joints(name: &str) -> bool {
-    const OTHERS: [&str; 15] = [
-        "joint_derivative",
-        "joint_accelerations",
-        "to_maximal",
-        "joint_jacobian",
-        "joint_input_jacobian",
-        "loop_closure",
-        "closure_distances",
-        "close_positions",
-        "close_velocities",
-        "joint_outputs",
-        "inverse_dynamics",
-        "inverse_derivatives",
-        "forward_derivatives",
-        "regressor",
-        "mass_matrix",
-    ];
-    let is_other = |start: &str| name.starts_with(start);
-    OTHERS.contains(&name)
-        || ["outputs_by_", "frame_"].into_iter().any(is_other)
-        || ["mass_factor", "bias_forces", "gravity_forces"].contains(&name)
-}
-
 /// What an element of what is given beside the state is.
-fn given(name: &str) -> fn(usize) -> Source {
-    match name {
-        "project" => Source::Change,
-        "newton_step" | "solve_velocities" => |place| Source::Chart(place / 4, place % 4),
+fn given(signature: &Signature) -> fn(usize) -> Source {
+    match signature.given {
+        Given::Told(_, Space::Rows) => Source::Change,
+        Given::Charts => |place| Source::Chart(place / 4, place % 4),
         _ => Source::Acceleration,
     }
 }
 
 /// What a function finds where it stores its results, if it may read that.
-fn before(name: &str) -> Option<fn(usize) -> Source> {
-    match name {
-        "newton_step" | "solve_velocities" => Some(Source::State),
-        "close_positions" | "close_velocities" | "to_joints" => Some(Source::Joint),
-        _ => None,
+fn before(signature: &Signature) -> Option<fn(usize) -> Source> {
+    match signature.overwritten()? {
+        Space::State => Some(Source::State),
+        _ => Some(Source::Joint),
     }
 }

@@ -2,88 +2,12 @@
 //!
 //! All of it is made anew from the model and from the formulas that were read; nothing is said that is not known here.
 
-use crate::module::{Module, frames, type_name};
+use crate::module::{Module, counts, frames, type_name};
 use crate::program::{Node, Operations, Program};
 use crate::refusal::Refusal;
 use gyro_model::{Model, Number, Parameter, RowOwner, Support, to_f64};
+use gyro_program::Kernel;
 use std::collections::BTreeSet;
-
-/// What a module says of one of its functions.
-struct Words {
-    function: &'static str,
-    /// What its row on the data sheet says that it computes.
-    computes: &'static str,
-    /// How its documentation begins, unless that is the word `Writes` and what it computes.
-    documentation: Option<&'static str>,
-}
-
-/// A function whose documentation repeats its row.
-const fn writes(function: &'static str, computes: &'static str) -> Words {
-    Words { function, computes, documentation: None }
-}
-
-/// A function whose documentation has words of its own.
-const fn says(function: &'static str, computes: &'static str, documentation: &'static str) -> Words {
-    Words { function, computes, documentation: Some(documentation) }
-}
-
-#[rustfmt::skip]
-const WORDS: &[Words] = &[
-    says("parameter_setup", "what depends on parameters alone", "What depends on parameters alone"),
-    writes("phi", "Φ"),
-    says("phi_q", "Φ_q, non-zeros in (r, p)", "Writes the non-zeros of Φ_q"),
-    says("phi_pi", "(Φ_r, Φ_π'), non-zeros", "Writes the non-zeros of (Φ_r, Φ_π')"),
-    writes("nu", "ν"),
-    writes("gamma", "γ"),
-    writes("velocity_residual", "Φ_r s + Φ_π' w' − ν"),
-    writes("applied_force", "(f, n' − w̃'J'w')"),
-    says("accelerations", "(s̈, ẇ'), eq. (17)", "Solves eq. (17)"),
-    says("multipliers", "λ, the accelerations being known", "Writes λ"),
-    says("project", "(δr, δπ') that changes the rows as given", "Solves eq. (17) without forces, the changes of the rows for γ"),
-    says("derivative", "ẏ but for the accelerations: eqs. (14), (16)", "Writes ẏ; beyond what [`gyro_sim::Dynamics::accelerations`] takes"),
-    says("energy", "T and V", "Kinetic and potential energy"),
-    says("read_joints", "joint coordinates and rates", "Writes the joint readings"),
-    says("outputs", "outputs, the accelerations being known", "Writes the outputs"),
-    says("chart_vectors", "for the choice of independent coordinates", "The four-vectors whose largest components are the special Euler parameters"),
-    says("newton_step", "dependent positions, one Newton step", "One Newton step of the dependent positions"),
-    says("solve_velocities", "dependent velocities, eq. (19)", "Solves eq. (19) for the dependent velocities"),
-    says("joint_accelerations", "u̇ in joint coordinates", "Writes u̇"),
-    says("joint_derivative", "ẋ but for u̇", "Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes"),
-    says("to_maximal", "(q, v) of a joint state", "Writes the maximal state of a joint state"),
-    says("to_joints", "(x, u) of a maximal state", "Writes the joint state of a maximal state"),
-    says("joint_accelerations_at", "u̇ at a corrected maximal state", "Writes u̇ at a state that satisfies the constraints"),
-    says("corrected_accelerations", "(s̈, ẇ') at a corrected state", "Writes (s̈, ẇ') at a state that satisfies the constraints"),
-    says("corrected_multipliers", "λ at such a state and these accelerations", "Writes λ"),
-    says("corrected_solution", "both", "Writes (s̈, ẇ') and λ at a state that satisfies the constraints"),
-    says("corrected_derivative", "ẏ but for the accelerations, there", "Writes ẏ; beyond what [`gyro_sim::CorrectedDynamics::corrected_accelerations`] takes"),
-    says("joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", "Writes ∂f/∂x and ∂f/∂t"),
-    writes("joint_input_jacobian", "∂f/∂(inputs)"),
-    writes("joint_parameter_jacobian", "∂f/∂(parameters)"),
-    says("joint_outputs", "outputs of a joint state, u̇ being known", "Writes the outputs of a joint state"),
-    writes("outputs_by_state", "∂(outputs)/∂(x, u), u̇ being held"),
-    writes("outputs_by_accelerations", "∂(outputs)/∂u̇"),
-    writes("outputs_by_inputs", "∂(outputs)/∂(inputs), u̇ being held"),
-    writes("outputs_by_parameters", "∂(outputs)/∂(parameters), u̇ being held"),
-    writes("frame_jacobians", "∂(ṡ, w')/∂u of frames, row by row"),
-    writes("frame_biases", "(s̈, ẇ') of frames at u̇ = 0"),
-    says("loop_closure", "Φ of the joints that close loops, in joint coordinates", "Writes Φ of the joints that close loops"),
-    says("closure_distances", "squares of distances between the rows of the loops' Jacobian", "Writes squares of distances between the rows of the loops' Jacobian"),
-    says("close_positions", "one Newton step of joint coordinates that closes loops", "One Newton step of the joint coordinates towards closed loops"),
-    says("close_velocities", "rates that keep loops closed", "Changes the rates such that loops stay closed"),
-    says("inverse_dynamics", "τ = M u̇ + h of given u̇", "Writes τ = M u̇ + h of given u̇"),
-    says("bias_forces", "h, that is τ at u̇ = 0", "Writes h"),
-    writes("inverse_derivatives", "∂τ/∂(x, u), row by row"),
-    writes("forward_derivatives", "∂u̇/∂(x, u, τ), row by row"),
-    writes("regressor", "Y of what inertia and gravity take, Y θ, row by row"),
-    says("mass_matrix", "M in joint coordinates, row by row", "Writes M in joint coordinates, row by row"),
-    writes("mass_factor", "D and L of M = Lᵀ D L"),
-    says("gravity_forces", "what of h is against gravity", "Writes what of h is against gravity"),
-];
-
-/// What a module says of the function of this name; `None` if no module has such a function.
-fn words(function: &str) -> Option<&'static Words> {
-    WORDS.iter().find(|words| words.function == function)
-}
 
 /// What every sheet says of rounding. The forms that were compared are known to the generator alone.
 const ROUNDING: &str = "* rounding: at most 10 times that of the best form compared";
@@ -286,28 +210,28 @@ fn unavailable(model: &Model, module: &Module) -> Vec<String> {
 /// `| phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 |`, with the loops in which it is computed if
 /// there are some; what gives no numbers has no row.
 fn row(model: &Model, module: &Module, name: &str, program: &Program) -> Option<String> {
-    let computes = words(name)?.computes;
+    let kernel = Kernel::named(name)?;
+    let computes = kernel.computes();
     let operations = Operations::of(program);
     let is_zero = |id: usize| match program.nodes[id] {
         Node::Constant(place) => module.constants.values[place].literal == 0.0,
         _ => false,
     };
     let zeros = program.results.iter().filter(|&&id| is_zero(id)).count();
-    let (n, work) = (model.coordinate_bodies().len(), usize::from(model.has_work()));
-    let (n_coordinates, n_rates) =
-        module.joints.as_ref().map_or((0, 0), |joints| (joints.n_coordinates, joints.n_rates));
-    let (name, results) = match name {
-        "newton_step" => (name, 7 * n),
-        "solve_velocities" => (name, 6 * n),
-        "close_positions" => (name, n_coordinates),
-        "close_velocities" => (name, n_rates),
-        "derivative" | "corrected_derivative" => (name, program.results.len() - 6 * n),
-        "joint_derivative" => (name, program.results.len() - n_rates),
+    let counts = counts(model, module.joints.as_ref());
+    let all = program.results.len();
+    let results = match kernel {
+        Kernel::NewtonStep => 7 * counts.bodies,
+        Kernel::SolveVelocities => 6 * counts.bodies,
+        Kernel::ClosePositions => counts.coordinates,
+        Kernel::CloseVelocities => counts.rates,
+        Kernel::Derivative | Kernel::CorrectedDerivative => all - 6 * counts.bodies,
+        Kernel::JointDerivative => all - counts.rates,
         // Work goes through.
-        "to_maximal" | "to_joints" => (name, program.results.len() - work),
-        "chart_vectors" => ("chart vectors", program.results.len()),
-        _ => (name, program.results.len()),
+        Kernel::ToMaximal | Kernel::ToJoints => all - counts.work,
+        _ => all,
     };
+    let name = kernel.name();
     let Operations { additions, multiplications, divisions, .. } = operations;
     let total = operations.total();
     let loops = match program.loops_that_compute() {
@@ -335,8 +259,7 @@ fn undocumented(module: &Module) -> Vec<Refusal> {
 
 /// ` Writes ν: 3 operations (1 ±, 2 ×, 0 ÷).`
 fn documentation(name: &str, program: &Program) -> Option<String> {
-    let Words { computes, documentation, .. } = words(name)?;
-    let words = documentation.map_or_else(|| format!("Writes {computes}"), str::to_owned);
+    let words = Kernel::named(name)?.signature().does;
     let operations = Operations::of(program);
     let Operations { additions, multiplications, divisions, functions } = operations;
     let calls = if functions > 0 { format!(" and {functions} functions") } else { String::new() };

@@ -19,6 +19,7 @@ use crate::program::Program;
 use crate::refusal::Refusal;
 use block::{Before, Form, Reader, Sizes};
 use gyro_model::{Model, Output, OutputKind, Spline};
+use gyro_program::{Counts, Given, Kernel, Outcome, Signature, Space, State};
 use matching::{Hole, Matched};
 use proc_macro2::{TokenStream, TokenTree};
 use skeleton::Has;
@@ -67,142 +68,69 @@ pub struct Module {
 /// The function that computes what depends on parameters alone.
 pub(crate) const PARAMETER_SETUP: &str = "parameter_setup";
 
-/// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 49] = [
-    (PARAMETER_SETUP, Form::Filling),
-    ("derivative", Form::Filling),
-    ("phi", Form::Filling),
-    ("velocity_residual", Form::Filling),
-    ("energy", Form::Energy),
-    ("read_joints", Form::Filling),
-    ("phi_q", Form::Filling),
-    ("phi_pi", Form::Filling),
-    ("nu", Form::Filling),
-    ("gamma", Form::Filling),
-    ("applied_force", Form::Filling),
-    ("accelerations", Form::Filling),
-    ("multipliers", Form::Filling),
-    ("project", Form::Filling),
-    ("outputs", Form::Filling),
-    ("newton_step", Form::Stores),
-    ("solve_velocities", Form::Stores),
-    ("chart_vectors", Form::Vectors),
-    ("corrected_derivative", Form::Filling),
-    ("joint_accelerations", Form::Filling),
-    ("joint_derivative", Form::Filling),
-    ("to_maximal", Form::Filling),
-    ("to_joints", Form::Joints),
-    ("joint_accelerations_at", Form::Filling),
-    ("corrected_accelerations", Form::Filling),
-    ("corrected_multipliers", Form::Filling),
-    ("corrected_solution", Form::Filling),
-    ("loop_closure", Form::Filling),
-    ("closure_distances", Form::Filling),
-    ("close_positions", Form::JointStores),
-    ("close_velocities", Form::JointStores),
-    ("joint_jacobian", Form::Jacobian),
-    ("joint_input_jacobian", Form::Filling),
-    ("joint_parameter_jacobian", Form::Filling),
-    ("joint_outputs", Form::Filling),
-    ("outputs_by_state", Form::Filling),
-    ("outputs_by_accelerations", Form::Filling),
-    ("outputs_by_inputs", Form::Filling),
-    ("outputs_by_parameters", Form::Filling),
-    ("frame_jacobians", Form::Filling),
-    ("frame_biases", Form::Filling),
-    ("inverse_dynamics", Form::Filling),
-    ("bias_forces", Form::Filling),
-    ("gravity_forces", Form::Filling),
-    ("mass_matrix", Form::Filling),
-    ("mass_factor", Form::Filling),
-    ("inverse_derivatives", Form::Filling),
-    ("forward_derivatives", Form::Filling),
-    ("regressor", Form::Filling),
-];
+/// How a function gives its results.
+fn form(signature: &Signature) -> Form {
+    match signature.result {
+        Outcome::Fills(..) | Outcome::Derived => Form::Filling,
+        Outcome::FillsTwo(_) => Form::Jacobian,
+        Outcome::Renews(..) => Form::Joints,
+        Outcome::Overwrites if signature.state == State::Maximal => Form::Stores,
+        Outcome::Overwrites => Form::JointStores,
+        Outcome::Energies => Form::Energy,
+        Outcome::Vectors => Form::Vectors,
+    }
+}
 
-/// What functions write, where it is not `out`.
-const TARGETS: [(&str, &str); 8] = [
-    ("derivative", "dy"),
-    ("corrected_derivative", "dy"),
-    ("multipliers", "lambda"),
-    ("corrected_multipliers", "lambda"),
-    ("joint_derivative", "dx"),
-    ("joint_jacobian", "dfdx"),
-    ("joint_jacobian", "dfdt"),
-    ("to_maximal", "y"),
-];
+/// What a function has another one compute first.
+fn before(signature: &Signature) -> Option<Before> {
+    let (Given::First(buffer, first) | Given::HandedOn(buffer, first)) = signature.given else { return None };
+    let (of, function, state) = (first.group().trait_name(), first.function(), signature.state.argument()?.0);
+    let call = format!("gyro_sim :: {of} :: {function} (self , t , {state} , & mut {buffer}) ;");
+    Some(Before { buffer, state, call })
+}
 
-/// What functions have others compute first.
-const BEFORE: [(&str, Before); 5] = [
-    ("derivative", ACCELERATIONS),
-    ("outputs", ACCELERATIONS),
-    (
-        "corrected_derivative",
-        Before {
-            buffer: "accelerations",
-            call: "gyro_sim :: CorrectedDynamics :: corrected_accelerations (self , t , y , & mut accelerations) ;",
-        },
-    ),
-    (
-        "joint_derivative",
-        Before {
-            buffer: "rates",
-            call: "gyro_sim :: JointSpace :: joint_accelerations (self , t , x , & mut rates) ;",
-        },
-    ),
-    (
-        "joint_outputs",
-        Before {
-            buffer: "accelerations",
-            call: "gyro_sim :: JointSpace :: joint_accelerations (self , t , x , & mut accelerations) ;",
-        },
-    ),
-];
-
-const ACCELERATIONS: Before = Before {
-    buffer: "accelerations",
-    call: "gyro_sim :: Dynamics :: accelerations (self , t , y , & mut accelerations) ;",
-};
-
-/// Functions that are made for states that satisfy the constraints.
-const ON_CONSTRAINTS: [&str; 5] = [
-    "joint_accelerations_at",
-    "corrected_accelerations",
-    "corrected_derivative",
-    "corrected_multipliers",
-    "corrected_solution",
-];
+/// The signature of a function by its name.
+fn signature(function: &str) -> Option<&'static Signature> {
+    Kernel::named(function).map(Kernel::signature)
+}
 
 /// Whether a function is made for states that satisfy the constraints.
 pub fn is_on_constraints(function: &str) -> bool {
-    ON_CONSTRAINTS.contains(&function)
+    signature(function).is_some_and(Signature::is_on_constraints)
 }
 
 /// The function that gives the accelerations, or rates, that another one reads.
 pub fn source_of_accelerations(function: &str) -> &'static str {
-    match function {
-        "joint_derivative" | "joint_outputs" | "inverse_dynamics" | "inverse_derivatives" | "regressor" => {
-            "joint_accelerations"
-        }
-        function if function.starts_with("outputs_by_") => "joint_accelerations",
-        "corrected_derivative" | "corrected_multipliers" => "corrected_accelerations",
-        _ => "accelerations",
+    signature(function).map_or(Kernel::Accelerations, Signature::accelerations).function()
+}
+
+/// Whether a function is told accelerations that need not be those of the equations of motion.
+pub fn takes_any_accelerations(function: &str) -> bool {
+    signature(function).is_some_and(Signature::takes_any_accelerations)
+}
+
+/// How many things of each kind a mechanism has, but for what formulas decide.
+pub(crate) fn counts(model: &Model, joints: Option<&JointLayout>) -> Counts {
+    Counts {
+        bodies: model.coordinate_bodies().len(),
+        rows: model.rows().len(),
+        work: usize::from(model.has_work()),
+        turns: model.turn_references().len(),
+        readings: skeleton::n_readings(model),
+        outputs: model.outputs.iter().map(|output| output.kind.columns().len()).sum(),
+        frames: frames(model).count(),
+        inputs: model.inputs.len(),
+        parameters: model.parameters.len(),
+        coordinates: joints.map_or(0, |joints| joints.n_coordinates),
+        rates: joints.map_or(0, |joints| joints.n_rates),
+        closure: joints.map_or(0, |joints| joints.closure_rows.len()),
+        ..Counts::default()
     }
 }
 
 /// The outputs that are frames.
 pub(crate) fn frames(model: &Model) -> impl Iterator<Item = &Output> {
     model.outputs.iter().filter(|output| matches!(output.kind, OutputKind::Velocity(_)))
-}
-
-/// Whether a function is told accelerations that need not be those of the equations of motion.
-pub fn takes_any_accelerations(function: &str) -> bool {
-    ["inverse_dynamics", "inverse_derivatives", "regressor"].contains(&function)
-        || function.starts_with("outputs_by_")
-}
-
-fn of_function<T: Copy>(table: &[(&str, T)], function: &str) -> Option<T> {
-    table.iter().find(|(name, _)| *name == function).map(|(_, value)| *value)
 }
 
 impl Module {
@@ -237,45 +165,50 @@ impl Module {
         matched: &Matched,
     ) -> Result<Self, Refusal> {
         let number = |name: &str| matched.numbers.get(name).copied();
-        let n_accelerations = number("accelerations").unwrap_or(0);
         let n_charts = number("charts");
+        let counts = Counts {
+            phi_q: number("phi_q").unwrap_or(0),
+            phi_pi: number("phi_pi").unwrap_or(0),
+            accelerations: number("accelerations").unwrap_or(0),
+            ..counts(model, joints.as_ref())
+        };
+        let n_accelerations = counts.accelerations;
         let sizes = Sizes {
-            state: n_state(model),
+            state: Space::State.len(&counts),
             accelerations: n_accelerations,
-            rows: model.rows().len(),
-            joints: joints.as_ref().map_or(0, JointLayout::n_state),
+            rows: counts.rows,
+            joints: Space::Joints.len(&counts),
             charts: n_charts.unwrap_or(0),
             tables: tables.len(),
             derived: number("derived").unwrap_or(0),
         };
         let mut occurrences = Vec::new();
-        let mut read = |name: &str, form| {
+        let mut read = |kernel: Kernel| {
+            let (name, signature) = (kernel.function(), kernel.signature());
             let Some(hole) = matched.holes.get(name) else { return Ok(None) };
-            let accelerations = match name {
-                "corrected_derivative" | "corrected_multipliers" => 6 * model.coordinate_bodies().len(),
-                name if source_of_accelerations(name) == "joint_accelerations" => {
-                    joints.as_ref().map_or(0, |joints| joints.n_rates)
-                }
-                _ => n_accelerations,
-            };
+            let accelerations = signature.accelerations().signature().n_results(&counts).unwrap_or(0);
             // What is set up does not read what is set up.
-            let derived = if name == PARAMETER_SETUP { 0 } else { sizes.derived };
-            let (sizes, before) = (Sizes { accelerations, derived, ..sizes }, of_function(&BEFORE, name));
+            let derived = if kernel == Kernel::ParameterSetup { 0 } else { sizes.derived };
+            let (sizes, before) = (Sizes { accelerations, derived, ..sizes }, before(signature));
             let mut reader = Reader::new(model, &mut occurrences, sizes, before);
             if hole.arguments.is_empty() {
-                before.iter().flat_map(Before::arguments).for_each(|argument| reader.argument(argument));
+                ["t"]
+                    .into_iter()
+                    .chain(signature.state.argument().map(|(state, _)| state))
+                    .for_each(|argument| reader.argument(argument));
             }
             hole.arguments.iter().for_each(|argument| reader.argument(argument));
-            let targets = TARGETS.iter().filter(|(function, _)| *function == name);
-            targets.for_each(|(_, target)| reader.target(target));
-            if matches!(form, Form::Joints | Form::JointStores) {
-                reader.buffer();
+            let targets = signature.written().into_iter().filter(|(name, _)| *name != "out");
+            match form(signature) {
+                Form::Joints | Form::JointStores => reader.buffer(),
+                Form::Stores => {}
+                _ => targets.for_each(|(target, _)| reader.target(target)),
             }
-            reader.body(&block(hole)?, form).map(|program| Some((name.to_owned(), program)))
+            reader.body(&block(hole)?, form(signature)).map(|program| Some((name.to_owned(), program)))
         };
         let mut written = BTreeMap::new();
-        for (name, form) in FUNCTIONS {
-            written.extend(read(name, form)?);
+        for kernel in Kernel::all() {
+            written.extend(read(kernel)?);
         }
         let places = constants.places(&occurrences)?;
         written.values_mut().for_each(|program| program.name_constants(&places));
@@ -319,7 +252,7 @@ impl Module {
         if module.implements("Dynamics") && n_accelerations < 6 * model.coordinate_bodies().len() {
             return Err(Refusal::new(1, format!("{n_accelerations} accelerations are too few")));
         }
-        module.sizes_agree(model, matched).map(|()| module)
+        module.sizes_agree(&counts, matched).map(|()| module)
     }
 
     /// Whether it implements a trait of the run time, of those that it may leave out.
@@ -328,69 +261,25 @@ impl Module {
     }
 
     /// Each function gives as many numbers as its type says.
-    fn sizes_agree(&self, model: &Model, matched: &Matched) -> Result<(), Refusal> {
-        let (n, rows) = (model.coordinate_bodies().len(), model.rows().len());
+    fn sizes_agree(&self, counts: &Counts, matched: &Matched) -> Result<(), Refusal> {
         let number = |name: &str| matched.numbers.get(name).copied().unwrap_or(0);
-        let (n_joints, n_rates) =
-            self.joints.as_ref().map_or((0, 0), |joints| (joints.n_state(), joints.n_rates));
-        let n_motion = self.joints.as_ref().map_or(0, JointLayout::n_motion);
-        let outputs: usize = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
-        let expected = [
-            (PARAMETER_SETUP, number("derived")),
-            ("derivative", n_state(model)),
-            ("phi", rows + n),
-            ("velocity_residual", rows),
-            ("energy", 2),
-            ("read_joints", skeleton::n_readings(model)),
-            ("phi_q", number("phi_q")),
-            ("phi_pi", number("phi_pi")),
-            ("nu", rows),
-            ("gamma", rows),
-            ("applied_force", 6 * n),
-            ("accelerations", self.n_accelerations),
-            ("multipliers", rows),
-            ("project", 6 * n),
-            ("outputs", outputs),
-            ("chart_vectors", 4 * number("charts")),
-            ("corrected_derivative", n_state(model)),
-            ("joint_accelerations", n_rates),
-            ("joint_derivative", n_joints),
-            ("to_maximal", n_state(model)),
-            ("to_joints", n_joints),
-            ("joint_accelerations_at", n_rates),
-            ("corrected_accelerations", 6 * n),
-            ("corrected_multipliers", rows),
-            ("corrected_solution", 6 * n + rows),
-            ("loop_closure", self.joints.as_ref().map_or(0, |joints| joints.closure_rows.len())),
-            ("closure_distances", self.joints.as_ref().map_or(0, |joints| joints.closure_rows.len())),
-            ("joint_jacobian", n_joints * (n_joints + 1)),
-            ("joint_input_jacobian", n_joints * model.inputs.len()),
-            ("joint_parameter_jacobian", n_joints * model.parameters.len()),
-            ("joint_outputs", outputs),
-            ("outputs_by_state", outputs * n_motion),
-            ("outputs_by_accelerations", outputs * n_rates),
-            ("outputs_by_inputs", outputs * model.inputs.len()),
-            ("outputs_by_parameters", outputs * model.parameters.len()),
-            ("frame_jacobians", 6 * frames(model).count() * n_rates),
-            ("frame_biases", 6 * frames(model).count()),
-            ("inverse_dynamics", n_rates),
-            ("bias_forces", n_rates),
-            ("gravity_forces", n_rates),
-            ("mass_matrix", n_rates * n_rates),
-            ("mass_factor", n_rates * n_rates),
-            ("inverse_derivatives", 2 * n_rates * n_rates),
-            ("forward_derivatives", 3 * n_rates * n_rates),
-            ("regressor", 10 * n * n_rates),
-        ];
+        let expected = Kernel::all().filter_map(|kernel| {
+            let n = match kernel {
+                Kernel::ParameterSetup => number("derived"),
+                Kernel::ChartVectors => 4 * number("charts"),
+                kernel => kernel.signature().n_results(counts)?,
+            };
+            Some((kernel.function(), n))
+        });
         // What is not written was not to be there.
         let of_function = |(name, size)| Some((name, self.written.get(name)?.results.len(), size));
         let patterns = [
-            ("phi_q_pattern", self.phi_q_pattern.len(), number("phi_q")),
-            ("phi_pi_pattern", self.phi_pi_pattern.len(), number("phi_pi")),
-            ("start", self.start.len(), n_state(model)),
-            ("joint_start", self.joint_start.len(), n_joints),
+            ("phi_q_pattern", self.phi_q_pattern.len(), counts.phi_q),
+            ("phi_pi_pattern", self.phi_pi_pattern.len(), counts.phi_pi),
+            ("start", self.start.len(), Space::State.len(counts)),
+            ("joint_start", self.joint_start.len(), Space::Joints.len(counts)),
         ];
-        let sizes = expected.into_iter().filter_map(of_function).chain(patterns);
+        let sizes = expected.filter_map(of_function).chain(patterns);
         for (name, found, expected) in sizes {
             if found != expected {
                 let line = matched.holes.get(name).map_or(0, |hole| hole.body.span_open().start().line);

@@ -5,6 +5,7 @@ use crate::divisors::Divisor;
 use crate::proof::{Claim, Verdict};
 use crate::refusal::Refusal;
 use crate::seed::Seed;
+use gyro_program::Kernel;
 use serde_json::{Value, json};
 use std::fmt;
 
@@ -192,12 +193,12 @@ pub(crate) fn section(proved: &[Claim], open: &[String]) -> Vec<String> {
         "Equal to the textbook's, by identity testing at a point of a fixed seed (`cargo xtask verify` draws it anew):".to_owned(),
     ];
     for group in proved.chunk_by(|a, b| a.against() == b.against()) {
-        let functions: Vec<&str> = group.iter().flat_map(|claim| claim.functions()).copied().collect();
+        let functions: Vec<&str> = group.iter().flat_map(|claim| claim.functions()).collect();
         lines.push(format!("* {}: {}", functions.join(", "), group[0].against()));
     }
     let has =
-        |claim: Claim, name: &str| proved.contains(&claim) || open.iter().any(|function| function == name);
-    let is_partitioned = has(Claim::NewtonStep, "newton_step") || has(Claim::ToJoints, "to_joints");
+        |kernel: Kernel| proved.contains(&Claim(kernel)) || open.iter().any(|name| name == kernel.function());
+    let is_partitioned = has(Kernel::NewtonStep) || has(Kernel::ToJoints);
     let pivoting = (!is_partitioned).then(|| "the choice of coordinates (pivoting at run time)".to_owned());
     let not_proved: Vec<String> =
         open.iter().cloned().chain(pivoting).chain(["the size of rounding errors".to_owned()]).collect();

@@ -7,6 +7,7 @@ use crate::report::{self, ACCEPTED_LOG10, Finding, Report};
 use crate::seed::Seed;
 use crate::{data_sheet, finite, numeric, structure};
 use gyro_model::Model;
+use gyro_program::Kernel;
 use num_bigint::BigUint;
 use std::f64::consts::LOG10_2;
 
@@ -78,11 +79,11 @@ fn with_section(module: &str, lines: &[String]) -> String {
 /// What is claimed of a module.
 fn claims(model: &Model, module: &Module) -> Vec<Claim> {
     let mut claims = Claim::all(module);
-    claims.retain(|claim| *claim != Claim::Outputs || !model.outputs.is_empty());
+    claims.retain(|claim| claim.0 != Kernel::Outputs || !model.outputs.is_empty());
     // Where rows depend on each other, the forces that they share and the motion off the trees' joints are left open.
     let is_open = |claim: &Claim| {
-        use Claim::{CorrectedMultipliers, CorrectedSolution, Motion, Projection};
-        matches!(claim, CorrectedMultipliers | CorrectedSolution | Motion | Projection)
+        use Kernel::{Accelerations, CorrectedMultipliers, CorrectedSolution, Project};
+        matches!(claim.0, CorrectedMultipliers | CorrectedSolution | Accelerations | Project)
     };
     claims.retain(|claim| model.dependent_rows().is_empty() || !is_open(claim));
     claims

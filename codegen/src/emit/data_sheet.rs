@@ -5,14 +5,15 @@ use crate::equations::{Equations, PartitionForm};
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::rounding::LIKE as ROUNDING;
 use crate::expr::schedule::{Operations, Passes};
-use crate::groups::Group;
 use crate::joint_space::obstacle;
-use crate::kernels::{Kernel, Kernels};
+use crate::kernels::Kernels;
 use crate::repeat::Repetition;
 use crate::scheduled;
 use crate::simplify::cheapest::{Chosen, Form};
 use crate::simplify::normal_form::Reduction;
 use gyro_model::{Model, RowOwner, Support};
+use gyro_program::Group;
+use gyro_program::Kernel;
 use rustc_hash::FxHashMap as HashMap;
 use std::fmt::Write;
 

@@ -11,13 +11,14 @@ use crate::derive::{Observed, Textbook};
 use crate::effort::Effort;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
-use crate::groups::{Functions, Group};
+use crate::groups::Functions;
 use crate::joint_space::JointSpace;
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::simplify::normal_form::vanishes;
 use crate::solve::Solution;
 use crate::solve::partition::Partition;
 use gyro_model::{Model, Spline};
+use gyro_program::{Counts, Group, Space};
 
 /// Non-zeros with their places.
 #[derive(Debug)]
@@ -210,7 +211,7 @@ impl<'m> Equations<'m> {
     }
 
     pub fn n_state(&self) -> usize {
-        13 * self.n_moving_bodies() + usize::from(self.power.is_some()) + self.turn_rates.len()
+        Space::State.len(&self.counts())
     }
 
     /// The argument that a variable is an element of, and where, if it is.
@@ -236,6 +237,30 @@ impl<'m> Equations<'m> {
             Symbol::Coordinate(place) => Some((Argument::Joints, place)),
             Symbol::Rate(place) => Some((Argument::Joints, self.n_coordinates() + place)),
             _ => None,
+        }
+    }
+
+    /// How many things of each kind there are.
+    pub fn counts(&self) -> Counts {
+        let model = self.model;
+        let space = self.joint_space.as_ref();
+        let frames = |space: &JointSpace| space.frames.as_ref().map_or(0, |frames| frames.names.len());
+        Counts {
+            bodies: self.n_moving_bodies(),
+            rows: self.n_rows,
+            work: usize::from(self.power.is_some()),
+            turns: self.turn_rates.len(),
+            readings: self.readings.len(),
+            outputs: self.outputs.len(),
+            frames: space.map_or(0, frames),
+            inputs: model.inputs.len(),
+            parameters: model.parameters.len(),
+            phi_q: self.phi_q.len(),
+            phi_pi: self.phi_pi.len(),
+            accelerations: self.solved.roots.len(),
+            coordinates: self.n_coordinates(),
+            rates: space.map_or(0, |space| space.layout.n_rates),
+            closure: space.map_or(0, |space| space.closure_rows.len()),
         }
     }
 

@@ -12,9 +12,10 @@ use crate::derive::{Observed, Textbook};
 use crate::expr::definitions::{Expansion, Values};
 use crate::expr::graph::ExprId;
 use crate::expr::symbol::Symbol;
-use crate::groups::{Functions, Group};
+use crate::groups::Functions;
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use gyro_model::Start;
+use gyro_program::Group;
 
 /// What is generated of a tree in joint coordinates, as final expressions. What belongs to functions that are not asked
 /// for is empty.

@@ -56,6 +56,3 @@ mod whole_angles;
 pub use candidates::Candidates;
 pub use choose::JointSpace;
 pub use coordinates::{Coordinates, obstacle};
-pub use jacobian::{Jacobian, ParameterJacobian};
-pub use observed::{Frames, OutputDerivatives};
-pub use on_request::OnRequest;

@@ -10,30 +10,20 @@ use crate::derive::system::System;
 use crate::expr::differentiate::gradient;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
-use crate::groups::{Functions, Group};
+use crate::groups::Functions;
 use crate::simplify::cheapest::{Chosen, FinalPasses};
 use crate::solve::ldl::Elimination;
+use gyro_program::{Group, Kernel};
 use std::collections::BTreeMap;
 
-/// Of each function the form that was chosen; none of what is not asked for.
+/// What was derived of these functions.
 #[derive(Debug, Default)]
 pub struct OnRequest {
-    /// τ in terms of joint coordinates, rates and [`Symbol::RateOfRate`].
-    pub inverse: Option<Chosen>,
-    pub bias: Option<Chosen>,
-    pub gravity: Option<Chosen>,
-    /// n × n.
-    pub mass_matrix: Option<Chosen>,
-    /// n × n: D on the diagonal, L beside it.
-    pub mass_factor: Option<Chosen>,
-    /// The rates in the order of which L is lower triangular.
+    /// Of each function that is asked for the form that was chosen. u̇ is [`Symbol::RateOfRate`]; matrices are row by
+    /// row.
+    pub forms: BTreeMap<Kernel, Chosen>,
+    /// The rates in the order of which L of the factor is lower triangular: D is on its diagonal.
     pub mass_order: Vec<usize>,
-    /// n × 2n.
-    pub inverse_derivatives: Option<Chosen>,
-    /// n × 3n.
-    pub forward_derivatives: Option<Chosen>,
-    /// n × ten for each body.
-    pub regressor: Option<Chosen>,
 }
 
 /// As the data sheet calls what is derived in these frames.
@@ -68,22 +58,23 @@ impl OnRequest {
         let mut found = Self::default();
         let n = coordinates.layout.n_rates;
         let given: Vec<_> = (0..n).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
+        let forms = &mut found.forms;
         if functions.has(Group::Inverse) {
-            found.inverse = Some(parts.inverse(system, &given));
-            found.bias = Some(parts.inverse(system, &vec![Graph::ZERO; n]));
-            found.gravity = Some(parts.gravity(system));
+            forms.insert(Kernel::InverseDynamics, parts.inverse(system, &given));
+            forms.insert(Kernel::BiasForces, parts.inverse(system, &vec![Graph::ZERO; n]));
+            forms.insert(Kernel::GravityForces, parts.gravity(system));
         }
         if functions.has(Group::MassMatrix) {
             found.mass_order = parts.order();
-            found.mass_matrix = Some(parts.mass_matrix(system));
-            found.mass_factor = Some(parts.mass_factor(system, &found.mass_order));
+            forms.insert(Kernel::MassMatrix, parts.mass_matrix(system));
+            forms.insert(Kernel::MassFactor, parts.mass_factor(system, &found.mass_order));
         }
         if functions.has(Group::Regressor) {
-            found.regressor = Some(parts.regressor(system, &given));
+            forms.insert(Kernel::Regressor, parts.regressor(system, &given));
         }
         if functions.has(Group::Derivatives) {
-            found.inverse_derivatives = Some(parts.inverse_slopes(system, &given));
-            found.forward_derivatives = Some(parts.forward_slopes(system, &parts.order()));
+            forms.insert(Kernel::InverseDerivatives, parts.inverse_slopes(system, &given));
+            forms.insert(Kernel::ForwardDerivatives, parts.forward_slopes(system, &parts.order()));
         }
         found
     }
@@ -203,7 +194,8 @@ impl<'c> Parts<'c> {
 mod tests {
     use crate::expr::schedule::Operations;
     use crate::groups::Functions;
-    use crate::kernels::{Kernel, Kernels};
+    use crate::kernels::Kernels;
+    use gyro_program::Kernel;
 
     /// Sines and cosines of angles between axes that are rational.
     const SKEW: [[i32; 3]; 7] =

@@ -11,7 +11,8 @@ use crate::expr::graph::{ExprId, Graph};
 use crate::expr::schedule::Operations;
 use crate::expr::symbol::Symbol;
 use crate::groups::Functions;
-use crate::kernels::{Kernel, Kernels};
+use crate::kernels::Kernels;
+use gyro_program::Kernel;
 use num_traits::Float;
 use std::cell::RefCell;
 

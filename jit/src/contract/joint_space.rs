@@ -1,19 +1,18 @@
 //! Joint coordinates.
 
 use super::maximal::start;
+use super::plain::functions;
 use crate::engine::Engine;
 use crate::mechanism::InProcess;
-use gyro_codegen::Kernel;
-use gyro_sim::{
-    JacobianBuffers, JointBuffers, JointJacobian, JointLayout, JointSpace, ParameterJacobian, Scalar,
-};
+use gyro_program::{Kernel, Space};
+use gyro_sim::{JacobianBuffers, JointBuffers, JointJacobian, JointLayout, JointOutputs, JointSpace, Scalar};
 
 impl<T: Scalar, E: Engine<T>> InProcess<T, E> {
     /// Where the work stands in a joint state, and where in a maximal one, if it is there.
     fn work_places(&self) -> Option<(usize, usize)> {
         let joint = &self.shared.joint;
         let at = joint.n_coordinates + joint.n_rates;
-        (joint.start.len() > at).then_some((at, 13 * self.scheduled().n_bodies))
+        (joint.start.len() > at).then_some((at, 13 * self.scheduled().counts.bodies))
     }
 }
 
@@ -27,17 +26,14 @@ impl<T: Scalar, E: Engine<T>> JointSpace for InProcess<T, E> {
     }
 
     fn joint_buffers(&self) -> JointBuffers<Self> {
-        let joint = &self.shared.joint;
-        JointBuffers { rates: self.zeros(joint.n_rates), closure: self.zeros(joint.closure_rows.len()) }
+        JointBuffers { rates: self.buffer(Space::Rates), closure: self.buffer(Space::Closure) }
     }
 
     fn joint_start(&self) -> Vec<T> {
         start(&self.shared.joint.start)
     }
 
-    fn joint_accelerations(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
-        self.fill(Kernel::JointAccelerations, t, x, out);
-    }
+    functions! { joint_accelerations: JointAccelerations, x; }
 
     fn joint_derivative(&self, t: T, x: &Vec<T>, dx: &mut Vec<T>) {
         let (first, n) = (self.shared.joint.n_coordinates, self.shared.joint.n_rates);
@@ -68,13 +64,7 @@ impl<T: Scalar, E: Engine<T>> JointSpace for InProcess<T, E> {
         }
     }
 
-    fn loop_closure(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
-        self.fill(Kernel::LoopClosure, t, x, out);
-    }
-
-    fn closure_distances(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
-        self.fill(Kernel::ClosureDistances, t, x, out);
-    }
+    functions! { loop_closure: LoopClosure, x; closure_distances: ClosureDistances, x; }
 
     fn close_positions(&self, t: T, x: &mut Vec<T>) {
         self.fill(Kernel::ClosePositions, t, &[], x);
@@ -90,8 +80,10 @@ impl<T: Scalar, E: Engine<T>> JointJacobian for InProcess<T, E> {
     type InputJacobian = Vec<T>;
 
     fn jacobian_buffers(&self) -> JacobianBuffers<Self> {
-        let [by_state, by_inputs] = self.shared.joint.jacobian.unwrap_or_default();
-        JacobianBuffers { jacobian: self.zeros(by_state), input_jacobian: self.zeros(by_inputs) }
+        JacobianBuffers {
+            jacobian: self.buffer(Space::Jacobian),
+            input_jacobian: self.buffer(Space::InputJacobian),
+        }
     }
 
     fn joint_jacobian(&self, t: T, x: &Vec<T>, dfdx: &mut Vec<T>, dfdt: &mut Vec<T>) {
@@ -103,19 +95,17 @@ impl<T: Scalar, E: Engine<T>> JointJacobian for InProcess<T, E> {
         });
     }
 
-    fn joint_input_jacobian(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
-        self.fill(Kernel::JointInputJacobian, t, x, out);
-    }
+    functions! { joint_input_jacobian: JointInputJacobian, x; }
 }
 
-impl<T: Scalar, E: Engine<T>> ParameterJacobian for InProcess<T, E> {
-    type ParameterJacobian = Vec<T>;
-
-    fn parameter_buffer(&self) -> Vec<T> {
-        self.zeros(self.n_results(Kernel::JointParameterJacobian))
-    }
-
-    fn joint_parameter_jacobian(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
-        self.fill(Kernel::JointParameterJacobian, t, x, out);
+impl<T: Scalar, E: Engine<T>> JointOutputs for InProcess<T, E> {
+    fn joint_outputs(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
+        if !self.shared.reads_given[Kernel::JointOutputs as usize] {
+            return self.fill(Kernel::JointOutputs, t, x, out);
+        }
+        self.with_given(self.shared.joint.n_rates, |rates| {
+            self.fill(Kernel::JointAccelerations, t, x, rates);
+            self.compute(Kernel::JointOutputs, t, (x, rates), out);
+        });
     }
 }

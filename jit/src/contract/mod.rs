@@ -2,7 +2,7 @@
 
 mod joint_space;
 mod maximal;
-mod observed;
 mod partition;
+mod plain;
 
 pub use partition::{Independent, OnHeap};

@@ -60,7 +60,8 @@ pub enum Independent {
 impl<T: Real, E: Engine<T>> InProcess<T, E> {
     /// Hands the four-vectors of the charts to `f`.
     fn with_charts<R>(&self, y: &[T], f: impl FnOnce(&[[T; 4]]) -> R) -> R {
-        self.with_given(self.n_results(Kernel::ChartVectors), |vectors| {
+        let kernel = self.scheduled().kernels.get(&Kernel::ChartVectors);
+        self.with_given(kernel.map_or(0, |kernel| kernel.tape.results.len()), |vectors| {
             self.fill(Kernel::ChartVectors, T::constant(0.0), y, vectors);
             f(vectors.as_chunks::<4>().0)
         })

@@ -74,10 +74,12 @@ pub enum Form {
 }
 
 /// What a function has another one compute first: the buffer and the call.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Before {
     pub buffer: &'static str,
-    pub call: &'static str,
+    /// The state that the call hands on, with the time.
+    pub state: &'static str,
+    pub call: String,
 }
 
 /// Reads one function body.
@@ -195,10 +197,10 @@ impl<'a> Reader<'a> {
             };
             self.before_results(statement)?;
             statements = rest;
-            if let Some(before) = self.before.filter(|before| before.starts(local, self.sizes.accelerations))
-            {
+            let starts = |before: &&Before| before.starts(local, self.sizes.accelerations);
+            if let Some(before) = self.before.as_ref().filter(starts).cloned() {
                 let [call, rest @ ..] = statements else { return Err(refused(local)) };
-                self.compute_first(before, call)?;
+                self.compute_first(&before, call)?;
                 statements = rest;
             } else {
                 self.binding(local)?;
@@ -339,10 +341,10 @@ impl<'a> Reader<'a> {
     }
 
     /// `gyro_sim::Dynamics::accelerations(self, t, y, &mut accelerations);` or the like, after its buffer.
-    fn compute_first(&mut self, before: Before, statement: &Stmt) -> Result<(), Refusal> {
+    fn compute_first(&mut self, before: &Before, statement: &Stmt) -> Result<(), Refusal> {
         // A long call is written in a list of lines, with a comma at the end.
         let is_call = text(statement).replace(" ,)", ")") == before.call;
-        for argument in before.arguments() {
+        for argument in ["t", before.state] {
             let entry = self.names.get_mut(argument).filter(|_| is_call);
             entry.ok_or_else(|| refused(statement))?.is_used = true;
         }
@@ -366,11 +368,6 @@ fn within(expression: &Expr) -> Option<&Expr> {
 }
 
 impl Before {
-    /// What the call hands on.
-    pub fn arguments(&self) -> impl Iterator<Item = &'static str> {
-        self.call.split([' ', '(']).filter(|word| ["t", "y", "x"].contains(word))
-    }
-
     /// Whether this is its buffer, of so many numbers.
     fn starts(&self, local: &Local, count: usize) -> bool {
         text(local) == format!("let mut {} = [T :: constant (0.0) ; {count}] ;", self.buffer)

@@ -11,6 +11,22 @@ use super::residuals::differences;
 use crate::field::Field;
 use crate::program::Source;
 use crate::tape::Term;
+use gyro_program::Kernel;
+
+/// What must be zero of a function; nothing that could be zero of one that is not known here.
+pub fn residuals<'a>(kernel: Kernel, case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    match kernel {
+        Kernel::InverseDynamics => inverse_dynamics(case),
+        Kernel::BiasForces => bias_forces(case),
+        Kernel::GravityForces => gravity_forces(case),
+        Kernel::MassMatrix => mass_matrix(case),
+        Kernel::MassFactor => mass_factor(case),
+        Kernel::InverseDerivatives => inverse_derivatives(case),
+        Kernel::ForwardDerivatives => forward_derivatives(case),
+        Kernel::Regressor => regressor(case),
+        _ => Some(vec![Term::one(case.point.context)]),
+    }
+}
 
 /// Any numbers for u̇: as good as any others are those of a motion.
 fn any_accelerations<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
@@ -38,14 +54,14 @@ fn equal<'a>(case: &Case<'a>, found: &[Term<'a>], expected: &[Term<'a>]) -> Vec<
 }
 
 /// `Bᵀ (M v̇ − f)` at any u̇.
-pub fn inverse_dynamics<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+fn inverse_dynamics<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let given = any_accelerations(case)?;
     let found = case.run_with("inverse_dynamics", &case.point, &given);
     Some(equal(case, &found, &forces(case, given)?))
 }
 
 /// The same at u̇ = 0.
-pub fn bias_forces<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+fn bias_forces<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let none = vec![Term::zero(case.point.context); case.module.joints.as_ref()?.n_rates];
     Some(equal(case, &case.run("bias_forces", &case.point), &forces(case, none)?))
 }
@@ -56,7 +72,7 @@ fn free_motions<'a>(case: &Case<'a>) -> Option<Vec<Vec<Term<'a>>>> {
 }
 
 /// `−Bᵀ (m g, 0)`.
-pub fn gravity_forces<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+fn gravity_forces<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let columns = free_motions(case)?;
     let weights = case.textbook(&case.point)?.weights();
     let expected: Vec<_> = columns.iter().map(|column| dot(column, &weights).neg()).collect();
@@ -74,12 +90,12 @@ fn masses<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
 }
 
 /// All of it.
-pub fn mass_matrix<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+fn mass_matrix<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     Some(equal(case, &case.run("mass_matrix", &case.point), &masses(case)?))
 }
 
 /// `Σ_k l_ki d_k l_kj` with ones for l_kk; and nothing where L has no place in its order.
-pub fn mass_factor<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+fn mass_factor<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let (factor, order) = (case.run("mass_factor", &case.point), &case.module.mass_order);
     let (n, context) = (order.len(), case.point.context);
     let entry =
@@ -146,14 +162,14 @@ fn slopes<'a>(case: &Case<'a>, function: &str, accelerations: &[Term<'a>]) -> Op
 }
 
 /// ∂τ/∂(x, u) at any u̇.
-pub fn inverse_derivatives<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+fn inverse_derivatives<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let given = any_accelerations(case)?;
     let expected = slopes(case, "inverse_dynamics", &given)?.concat();
     Some(equal(case, &case.run_with("inverse_derivatives", &case.point, &given), &expected))
 }
 
 /// ∂u̇/∂(x, u), and a matrix beside it that is `M⁻¹`.
-pub fn forward_derivatives<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+fn forward_derivatives<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let (n, masses) = (case.module.joints.as_ref()?.n_rates, masses(case)?);
     let found = case.run("forward_derivatives", &case.point);
     if masses.len() != n * n || found.len() != 3 * n * n {
@@ -209,7 +225,7 @@ fn axes<'a>(one: &Term<'a>, p: &[Term<'a>]) -> [Three<'a>; 3] {
 
 /// Forces on a point mass at the origin, on one at r to first order in r, and torques of moments of inertia, at the
 /// accelerations of any u̇.
-pub fn regressor<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+fn regressor<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let given = any_accelerations(case)?;
     let found = case.run_with("regressor", &case.point, &given);
     let motion = Motion::with(case, given)?;

@@ -1,6 +1,7 @@
 //! What once got through: terms that vanish where a claim is tested, and syntax that nobody looked at.
 
 use crate::support::Page;
+use gyro_program::Kernel;
 use gyro_verifier::field::Prime;
 use gyro_verifier::module::{Module, is_on_constraints};
 use gyro_verifier::program::{Function, Id, Node, Program, Source};
@@ -159,7 +160,7 @@ fn normalisation_rows_are_proved() {
     let module = Module::read(&page.model, &page.code, &page.constants).expect("the emitted subset");
     let prime: Prime<9> = prime(&page.model, &module, SEED).expect("room for all roots");
     let decider = Decider::new(&page.model, prime);
-    let verdict = |module: &Module| decider.decide(module, Claim::Phi, 1, SEED);
+    let verdict = |module: &Module| decider.decide(module, Claim(Kernel::Phi), 1, SEED);
     assert!(matches!(verdict(&module), Verdict::Proved { .. }));
     let row = page.model.rows().len();
     for wrong in ["1 − pᵀp", "0", "(pᵀp)² − pᵀp"] {

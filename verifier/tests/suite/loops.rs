@@ -6,6 +6,7 @@ use crate::layouts::{places, stated};
 use crate::support::{Page, generate_text, page};
 use chacha20::ChaCha8Rng;
 use gyro_model::RowOwner;
+use gyro_program::Kernel;
 use gyro_verifier::field::Constant;
 use gyro_verifier::joints::{Freedom, JointLayout};
 use gyro_verifier::module::Module;
@@ -20,13 +21,13 @@ const FAULTS: usize = 40;
 
 /// What the functions of joint coordinates of a mechanism with loops are claimed to be.
 const CLAIMS: [Claim; 7] = [
-    Claim::LoopClosure,
-    Claim::ClosePositions,
-    Claim::CloseVelocities,
-    Claim::ToMaximal,
-    Claim::ToJoints,
-    Claim::JointAccelerations,
-    Claim::JointDerivative,
+    Claim(Kernel::LoopClosure),
+    Claim(Kernel::ClosePositions),
+    Claim(Kernel::CloseVelocities),
+    Claim(Kernel::ToMaximal),
+    Claim(Kernel::ToJoints),
+    Claim(Kernel::JointAccelerations),
+    Claim(Kernel::JointDerivative),
 ];
 
 /// A rate as a sum of velocities (s, w') of the bodies, each added or taken away.
@@ -275,7 +276,7 @@ fn proves(decider: &Decider<'_, 9>, module: &Module, claims: &[Claim]) -> bool {
 /// Whether a claim determines what its functions give. Loops are closed by any step that makes up for Φ or its rate:
 /// an elimination with other weights gives another such step.
 fn is_unique(claim: Claim) -> bool {
-    !matches!(claim, Claim::ClosePositions | Claim::CloseVelocities)
+    !matches!(claim, Claim(Kernel::ClosePositions) | Claim(Kernel::CloseVelocities))
 }
 
 fn is_of_results(fault: &Fault) -> bool {
@@ -298,9 +299,12 @@ fn functions_that_close_loops_are_proved_and_faults_in_them_found() {
             assert!(proves(&decider, &module, &[claim]), "{name}: {claim:?}");
         }
         let mut random = ChaCha8Rng::seed_from_u64(SEED);
-        for claim in
-            [Claim::LoopClosure, Claim::ClosePositions, Claim::CloseVelocities, Claim::JointAccelerations]
-        {
+        for claim in [
+            Claim(Kernel::LoopClosure),
+            Claim(Kernel::ClosePositions),
+            Claim(Kernel::CloseVelocities),
+            Claim(Kernel::JointAccelerations),
+        ] {
             let function = claim.functions()[0];
             let all: Vec<_> = faults(&module)
                 .into_iter()
@@ -343,7 +347,7 @@ fn accelerations_must_balance_forces() {
         });
         c.rates(mechanism.rates, &accelerations)
     });
-    assert!(!proves(&decider, &module, &[Claim::JointAccelerations]));
+    assert!(!proves(&decider, &module, &[Claim(Kernel::JointAccelerations)]));
 }
 
 /// A row that the coordinates satisfy by themselves closes no loop: with it the rows of J depend on each other.
@@ -353,7 +357,7 @@ fn closure_rows_must_be_those_that_close_loops() {
     let mut module = mechanism.module();
     let decider = with_decider(&mechanism, &module);
     module.joints.as_mut().expect("a layout").closure_rows[0] = 0;
-    for claim in [Claim::ToMaximal, Claim::LoopClosure, Claim::JointAccelerations] {
+    for claim in [Claim(Kernel::ToMaximal), Claim(Kernel::LoopClosure), Claim(Kernel::JointAccelerations)] {
         assert!(!proves(&decider, &module, &[claim]), "{claim:?}");
     }
 }
@@ -371,5 +375,5 @@ fn rates_that_keep_loops_closed_are_kept() {
         let zero = c.push(Node::Sub(x, x));
         vec![zero; mechanism.rates.len()]
     });
-    assert!(!proves(&decider, &module, &[Claim::CloseVelocities]));
+    assert!(!proves(&decider, &module, &[Claim(Kernel::CloseVelocities)]));
 }

@@ -5,6 +5,7 @@ use crate::layouts::{places, stated};
 use crate::loops::{Composed, add, of_state};
 use crate::support::{Page, generate_text, page};
 use gyro_model::JointCoordinate;
+use gyro_program::Kernel;
 use gyro_verifier::joints::{Freedom, JointLayout};
 use gyro_verifier::module::Module;
 use gyro_verifier::program::{Id, Node, Source};
@@ -12,8 +13,12 @@ use gyro_verifier::proof::{Claim, Decider, Statements, Verdict};
 
 const SEED: u64 = 29;
 
-const CLAIMS: [Claim; 4] =
-    [Claim::ToMaximal, Claim::ToJoints, Claim::JointAccelerations, Claim::JointDerivative];
+const CLAIMS: [Claim; 4] = [
+    Claim(Kernel::ToMaximal),
+    Claim(Kernel::ToJoints),
+    Claim(Kernel::JointAccelerations),
+    Claim(Kernel::JointDerivative),
+];
 
 /// Two bodies on revolute joints, where the angle of one determines that of the other, or time does.
 struct Substituted {
@@ -140,7 +145,11 @@ fn couplers_and_drivers_are_substituted() {
             let program = wrong.programs.get_mut(function).expect("a function");
             let place = if function == "to_maximal" { angle } else { 2 };
             program.results[place] = program.push(Node::Neg(program.results[place]), 1);
-            let claim = if function == "to_maximal" { Claim::ToMaximal } else { Claim::JointDerivative };
+            let claim = if function == "to_maximal" {
+                Claim(Kernel::ToMaximal)
+            } else {
+                Claim(Kernel::JointDerivative)
+            };
             assert!(!proves(&wrong, claim), "{name}: {function}");
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::support::generate_text;
 use gyro_model::Model;
+use gyro_program::Kernel;
 use gyro_verifier::field::Prime;
 use gyro_verifier::module::Module;
 use gyro_verifier::program::{Node, Program};
@@ -47,7 +48,7 @@ fn many_roots_hide_neither_proof_nor_fault() {
     let mut module = Module::read(&model, &module.code, &module.constants).expect("the emitted subset");
     let prime: Prime<9> = prime(&model, &module, 1).expect("room for all roots");
     let decider = Decider::new(&model, prime);
-    let decide = |module: &Module| decider.decide(module, Claim::AppliedForce, 1, 1);
+    let decide = |module: &Module| decider.decide(module, Claim(Kernel::AppliedForce), 1, 1);
     assert!(matches!(decide(&module), Verdict::Proved { .. }));
     module.programs.get_mut("applied_force").expect("a function").results.swap(3, 4);
     assert!(matches!(decide(&module), Verdict::Refuted { .. }));
@@ -323,7 +324,7 @@ fn roots_of_parameters_are_never_too_many() {
     let mut module = Module::read(&model, &module.code, &module.constants).expect("the emitted subset");
     let prime: Prime<9> = prime(&model, &module, 1).expect("room for all roots");
     let decider = Decider::new(&model, prime);
-    let decide = |module: &Module| decider.decide(module, Claim::ToMaximal, 1, 1);
+    let decide = |module: &Module| decider.decide(module, Claim(Kernel::ToMaximal), 1, 1);
     assert!(matches!(decide(&module), Verdict::Proved { .. }));
     module.programs.get_mut("to_maximal").expect("a function").results.swap(3, 4);
     assert!(matches!(decide(&module), Verdict::Refuted { .. }));
@@ -392,10 +393,10 @@ fn half_a_turn_is_refuted() {
     let mut module = Module::read(&page.model, &page.code, &page.constants).expect("the emitted subset");
     let prime: Prime<9> = prime(&page.model, &module, 1).expect("room for all roots");
     let decider = Decider::new(&page.model, prime);
-    assert!(matches!(decider.decide(&module, Claim::ToJoints, 1, 1), Verdict::Proved { .. }));
+    assert!(matches!(decider.decide(&module, Claim(Kernel::ToJoints), 1, 1), Verdict::Proved { .. }));
     let program = module.programs.get_mut("to_joints").expect("a tree has joint coordinates");
     *program = turned(program);
-    assert!(matches!(decider.decide(&module, Claim::ToJoints, 1, 1), Verdict::Refuted { .. }));
+    assert!(matches!(decider.decide(&module, Claim(Kernel::ToJoints), 1, 1), Verdict::Refuted { .. }));
 }
 
 /// A start in joint coordinates that is not the assembled one is a mistake.

@@ -4,8 +4,8 @@ use super::writer::ModuleWriter;
 use crate::emit::literals::float;
 use crate::emit::names::{ident, index};
 use crate::emit::results::filled;
-use crate::kernels::Kernel;
 use gyro_model::{Computation, Model, Number, Parameter, ParameterRule};
+use gyro_program::Kernel;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -177,7 +177,7 @@ impl ModuleWriter<'_> {
         let roots = self.kernels.roots(Kernel::ParameterSetup);
         let n = index(roots.len());
         (!roots.is_empty()).then(|| {
-            self.function("What depends on parameters alone", roots, |body, _, _| {
+            self.function(Kernel::ParameterSetup.signature().does, roots, |body, _, _| {
                 let (statements, filled) = (&body.statements, filled("out", &body.values));
                 quote! {
                     fn parameter_setup(&self, out: &mut [T; #n]) {

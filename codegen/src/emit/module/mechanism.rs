@@ -3,70 +3,13 @@
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
 use crate::emit::names::{self, ident, index};
-use crate::kernels::Kernel;
 use crate::scheduled;
 use gyro_model::{JointKind, RowOwner, RowUnit, Start};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 impl ModuleWriter<'_> {
-    pub fn mechanism(&self, start: &Start) -> TokenStream {
-        let name = ident(self.type_name);
-        let e = self.equations;
-        let [n_rows, n_all, n_velocities] = [e.n_rows, e.phi.len(), e.n_velocities()].map(index);
-        let [n_readings, n_outputs, n_state] = [e.readings.len(), e.outputs.len(), e.n_state()].map(index);
-        let phi = self.filling(Kernel::Phi, "Writes Φ", "Constraints");
-        let residual = self.filling(Kernel::VelocityResidual, "Writes Φ_r s + Φ_π' w' − ν", "Rows");
-        let force = self.filling(Kernel::AppliedForce, "Writes (f, n' − w̃'J'w')", "Velocities");
-        let energy = self.function(
-            "Kinetic and potential energy",
-            self.kernels.roots(Kernel::Energy),
-            |body, t, y| {
-                let (statements, kinetic, potential) = (&body.statements, &body.values[0], &body.values[1]);
-                quote! {
-                    fn energy(&self, #t: T, #y: &Self::State) -> gyro_sim::Energy<T> {
-                        #statements
-                        gyro_sim::Energy { kinetic: #kinetic, potential: #potential }
-                    }
-                }
-            },
-        );
-        let readings = self.filling(Kernel::ReadJoints, "Writes the joint readings", "Readings");
-        let (start, description) = (self.start(start), self.description());
-        let (outputs, set_input) = (self.outputs(), self.set_input());
-        quote! {
-            impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for #name<T> {
-                type Scalar = T;
-                type State = [T; #n_state];
-                type Rows = [T; #n_rows];
-                type Constraints = [T; #n_all];
-                type Velocities = [T; #n_velocities];
-                type Readings = [T; #n_readings];
-                type Outputs = [T; #n_outputs];
-
-                #description
-                fn buffers(&self) -> gyro_sim::Buffers<Self> {
-                    gyro_sim::Buffers {
-                        rows: [T::constant(0.0); #n_rows],
-                        constraints: [T::constant(0.0); #n_all],
-                        velocities: [T::constant(0.0); #n_velocities],
-                        readings: [T::constant(0.0); #n_readings],
-                        outputs: [T::constant(0.0); #n_outputs],
-                    }
-                }
-                #start
-                #phi
-                #residual
-                #force
-                #energy
-                #readings
-                #outputs
-                #set_input
-            }
-        }
-    }
-
-    fn start(&self, start: &Start) -> TokenStream {
+    pub fn start(&self, start: &Start) -> TokenStream {
         let start = scheduled::start(self.equations.model, start).into_iter();
         let start: Vec<_> = start.map(|x| if x == 0.0 { float(0.0) } else { float(x) }).collect();
         quote! {
@@ -77,8 +20,31 @@ impl ModuleWriter<'_> {
         }
     }
 
+    /// The setter of inputs by their index.
+    pub fn set_input(&self) -> TokenStream {
+        let inputs = &self.equations.model.inputs;
+        if inputs.is_empty() {
+            return quote! {
+                fn set_input(&mut self, _index: usize, _value: T) -> bool {
+                    false
+                }
+            };
+        }
+        let fields = inputs.iter().map(|input| ident(&input.name));
+        let places = (0..inputs.len()).map(index);
+        quote! {
+            fn set_input(&mut self, index: usize, value: T) -> bool {
+                match index {
+                    #(#places => { self.#fields = value; })*
+                    _ => return false,
+                }
+                true
+            }
+        }
+    }
+
     /// Names, rows and sizes.
-    fn description(&self) -> TokenStream {
+    pub fn description(&self) -> TokenStream {
         let e = self.equations;
         let bodies = self.moving_bodies().into_iter().map(|body| &e.model.bodies[body].name);
         let joints = e.model.joints.iter().map(|joint| {

@@ -1,15 +1,12 @@
 //! The text of a generated module: the mechanism's type and its implementation of the run-time contract.
 
+mod contract;
 mod definition;
-mod dynamics;
+mod functions;
 mod indices;
-mod joint_space;
-mod kinematics;
 mod mechanism;
-mod observed;
-mod on_request;
 mod partition;
-mod ports;
+mod patterns;
 mod tables;
 mod variables;
 mod writer;
@@ -52,7 +49,9 @@ pub fn write(
     start: &Start,
 ) -> Text {
     let literals = Literals::default();
-    let module = ModuleWriter { equations, type_name, kernels, literals, repetitions: RefCell::default() };
+    let counts = equations.counts();
+    let repetitions = RefCell::default();
+    let module = ModuleWriter { equations, counts, type_name, kernels, literals, repetitions };
     let tokens = module.tokens(start);
     let data_sheet = DataSheet::of(equations, &module.kernels, &module.repetitions.borrow());
     let (tokens, constants) = module.literals.write(tokens);
@@ -64,33 +63,12 @@ pub fn write(
 
 impl ModuleWriter<'_> {
     fn tokens(&self, start: &Start) -> TokenStream {
-        let (tables, definition, mechanism) =
-            (self.tables_of_motions(), self.definition(), self.mechanism(start));
-        let (partition, kinematics, dynamics) = (self.partition(), self.kinematics(), self.dynamics());
-        let (projection, joint_space) = (self.projection(), self.joint_space());
-        let (corrected_dynamics, corrected_solution) = (self.corrected_dynamics(), self.corrected_solution());
-        let (joint_jacobian, parameter_jacobian) = (self.joint_jacobian(), self.parameter_jacobian());
-        let (joint_outputs, output_derivatives, frames) =
-            (self.joint_outputs(), self.output_derivatives(), self.frames());
-        let on_request = self.on_request();
-        let indices = self.indices();
+        let (tables, definition) = (self.tables_of_motions(), self.definition());
+        let (contract, indices) = (self.contract(start), self.indices());
         quote! {
             #tables
             #definition
-            #mechanism
-            #partition
-            #kinematics
-            #dynamics
-            #projection
-            #corrected_dynamics
-            #joint_space
-            #corrected_solution
-            #joint_jacobian
-            #parameter_jacobian
-            #joint_outputs
-            #output_derivatives
-            #frames
-            #on_request
+            #contract
             #indices
         }
     }

@@ -5,24 +5,22 @@ use crate::emit::names::{ident, index};
 use crate::emit::results::stored;
 use crate::equations::PartitionForm;
 use crate::expr::symbol::Symbol;
-use crate::groups::Group;
-use crate::kernels::Kernel;
 use crate::scheduled;
+use gyro_program::Kernel;
 use proc_macro2::TokenStream;
 use quote::quote;
 
 impl ModuleWriter<'_> {
-    /// Nothing unless it is asked for.
-    pub fn partition(&self) -> Option<TokenStream> {
-        let is_asked_for = self.equations.functions.has(Group::Partition);
+    /// In the way that suits the mechanism.
+    pub fn partition(&self) -> TokenStream {
         // Trees have no singular poses.
         let joint_space = self.equations.joint_space.as_ref();
         let has_poses = joint_space.is_none_or(|space| !space.closure_rows.is_empty());
-        is_asked_for.then(|| match self.equations.partition_form() {
+        match self.equations.partition_form() {
             PartitionForm::Charts => self.by_charts(),
             PartitionForm::Joints => self.by_joints(has_poses),
             PartitionForm::Pivoting => self.by_pivoting(has_poses),
-        })
+        }
     }
 
     /// Full pivoting at run time.
@@ -110,7 +108,7 @@ impl ModuleWriter<'_> {
         let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
         let n_state = index(self.equations.n_state());
         let vectors = self.function(
-            "The four-vectors whose largest components are the special Euler parameters",
+            Kernel::ChartVectors.signature().does,
             self.kernels.roots(Kernel::ChartVectors),
             |body, _, y| {
                 let statements = &body.statements;
@@ -123,13 +121,8 @@ impl ModuleWriter<'_> {
                 }
             },
         );
-        let newton =
-            self.solve("newton_step_on", "One Newton step of the dependent positions", Kernel::NewtonStep);
-        let velocities = self.solve(
-            "solve_velocities_on",
-            "Solves eq. (19) for the dependent velocities",
-            Kernel::SolveVelocities,
-        );
+        let newton = self.solve("newton_step_on", Kernel::NewtonStep);
+        let velocities = self.solve("solve_velocities_on", Kernel::SolveVelocities);
         quote! {
             /// The solves of the partition, for the charts that are given as unit vectors.
             impl<T: gyro_sim::Scalar> #name<T> {
@@ -164,13 +157,13 @@ impl ModuleWriter<'_> {
     }
 
     /// A solve of the partition, which overwrites part of the state; what keeps its value is not stored again.
-    fn solve(&self, name: &str, what: &str, kernel: Kernel) -> TokenStream {
+    fn solve(&self, name: &str, kernel: Kernel) -> TokenStream {
         let name = ident(name);
         let (places, roots) = scheduled::stores(self.equations, kernel, self.kernels.roots(kernel));
         let y = ident(if places.is_empty() { "_y" } else { "y" });
         let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
         let n_state = index(self.equations.n_state());
-        self.function(what, &roots, |body, t, _| {
+        self.function(kernel.signature().does, &roots, |body, t, _| {
             let (statements, stored) = (&body.statements, stored("y", &places, &body.values));
             let charted = body.symbols.iter().any(|s| matches!(s, Symbol::Chart { .. }));
             let charts = ident(if charted { "charts" } else { "_charts" });

@@ -5,15 +5,15 @@ use crate::emit::data_sheet::printable;
 use crate::emit::literals::Literals;
 use crate::emit::loops;
 use crate::emit::names::{ident, index};
-use crate::emit::results::filled;
 use crate::emit::tokens::{self, Body};
 use crate::equations::Equations;
 use crate::expr::graph::ExprId;
 use crate::expr::schedule::Operations;
 use crate::expr::symbol::Symbol;
-use crate::kernels::{Kernel, Kernels};
+use crate::kernels::Kernels;
 use crate::repeat::Repetition;
 use crate::scheduled;
+use gyro_program::Counts;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 use rustc_hash::FxHashMap as HashMap;
@@ -37,6 +37,7 @@ fn evaluated_table(table: usize) -> TokenStream {
 /// What the parts of a module are written from.
 pub struct ModuleWriter<'a> {
     pub equations: &'a Equations<'a>,
+    pub counts: Counts,
     pub type_name: &'a str,
     pub kernels: Kernels,
     /// Exact constants of all functions.
@@ -84,20 +85,6 @@ impl ModuleWriter<'_> {
             }
         });
         tables.collect()
-    }
-
-    /// A kernel that fills `out`, a function of time and state.
-    pub fn filling(&self, kernel: Kernel, what: &str, ty: &str) -> TokenStream {
-        let (name, ty) = (ident(kernel.name()), ident(ty));
-        self.function(what, self.kernels.roots(kernel), |body, t, y| {
-            let (statements, filled) = (&body.statements, filled("out", &body.values));
-            quote! {
-                fn #name(&self, #t: T, #y: &Self::State, out: &mut Self::#ty) {
-                    #statements
-                    #filled
-                }
-            }
-        })
     }
 
     /// A function with its operation counts; arguments that it does not read get a leading underscore.

@@ -1,6 +1,6 @@
 //! What solvers and observers see of a mechanism.
 
-use super::pieces::{buffers, fillings, list, names, setter};
+use super::pieces::{list, names, setter};
 use gyro_model::{CoordinateKind, JointKind, Model, RowOwner, RowUnit};
 
 /// Number of elements of the state.
@@ -57,51 +57,13 @@ fn turn_references(model: &Model) -> String {
     list(places)
 }
 
-pub(super) fn mechanism(model: &Model, name: &str) -> String {
-    let (n, n_rows, n_outputs) = (model.coordinate_bodies().len(), model.rows().len(), columns(model).len());
-    let sizes = [n_rows, n_rows + n, 6 * n, n_readings(model), n_outputs].map(|n| n.to_string());
-    let [rows, constraints, velocities, readings, outputs] = &sizes;
-    format!(
-        "impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for {name}<T> {{
-            type Scalar = T;
-            type State = [T; {}];
-            type Rows = [T; {rows}];
-            type Constraints = [T; {constraints}];
-            type Velocities = [T; {velocities}];
-            type Readings = [T; {readings}];
-            type Outputs = [T; {outputs}];
-            fn description(&self) -> &gyro_sim::Description<'_> {{
-                const DESCRIPTION: gyro_sim::Description<'static> = {};
-                &DESCRIPTION
-            }}
-            {}
-            fn start(&self) -> Self::State {{ HOLE_start }}
-            {}
-            fn energy(&self, ANY_t: T, ANY_y: &Self::State) -> gyro_sim::Energy<T> {{ HOLE_energy }}
-            {}
-            {}
-        }}",
-        n_state(model),
-        description(model),
-        buffers(
-            "buffers",
-            "Buffers",
-            &[
-                ("rows", rows),
-                ("constraints", constraints),
-                ("velocities", velocities),
-                ("readings", readings),
-                ("outputs", outputs),
-            ],
-        ),
-        fillings(&[("phi", "Constraints"), ("velocity_residual", "Rows"), ("applied_force", "Velocities")]),
-        fillings(&[("read_joints", "Readings"), ("outputs", "Outputs")]),
-        setter("fn set_input", &model.inputs, ("self", "", "")),
-    )
+/// The setter of inputs.
+pub(super) fn set_input(model: &Model) -> String {
+    setter("fn set_input", &model.inputs, ("self", "", ""))
 }
 
 /// Names, rows and sizes.
-fn description(model: &Model) -> String {
+pub(super) fn description(model: &Model) -> String {
     let bodies = names(model.coordinate_bodies().iter().map(|&body| &model.bodies[body].name));
     let couplers = names(model.couplers.iter().map(|coupler| &coupler.name));
     let drivers = names(model.drivers.iter().map(|driver| &driver.name));

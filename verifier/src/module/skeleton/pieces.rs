@@ -1,4 +1,4 @@
-//! Pieces of text: lists, buffers, and functions that fill or set something.
+//! Pieces of text: lists, and functions that set something.
 
 use gyro_model::Parameter;
 use std::fmt::Display;
@@ -34,20 +34,4 @@ pub(super) fn setter(
             true
         }}"
     )
-}
-
-/// A function that gives buffers of zeros, a field for each pair.
-pub(super) fn buffers(function: &str, of: &str, fields: &[(&str, &str)]) -> String {
-    let zeros = |(field, count): &(&str, &str)| format!("{field}: [T::constant(0.0); {count}]");
-    let fields = list(fields.iter().map(zeros));
-    format!("fn {function}(&self) -> gyro_sim::{of}<Self> {{ gyro_sim::{of} {{ {fields} }} }}")
-}
-
-/// A function that fills `out`, for each pair of name and type.
-pub(super) fn fillings(pairs: &[(&str, &str)]) -> String {
-    lines(pairs.iter().map(|(function, ty)| {
-        format!(
-            "fn {function}(&self, ANY_t: T, ANY_y: &Self::State, ANY_out: &mut Self::{ty}) {{ HOLE_{function} }}"
-        )
-    }))
 }
