@@ -49,7 +49,7 @@ impl Precision {
     /// An elementary function by its name in Rust and the number of its operands.
     fn function(self, name: &str, arity: usize) -> Option<&'static str> {
         let function = Function::named(name).filter(|function| function.arity() == arity)?;
-        Some(function.signature().in_c[self as usize])
+        Some(function.properties().in_c[self as usize])
     }
 }
 

@@ -29,7 +29,7 @@ pub enum Parity {
 
 /// A row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Signature {
+pub struct Properties {
     /// Its name in Rust.
     pub name: &'static str,
     /// Its names in C, of `double` and of `float`.
@@ -48,7 +48,7 @@ impl Function {
 
     /// Its row of the table.
     #[rustfmt::skip]
-    pub const fn signature(self) -> Signature {
+    pub const fn properties(self) -> Properties {
         use Parity::{Even, Neither, Odd};
         let (name, in_c, arity, parity, at_zero) = match self {
             Self::Sqrt => ("sqrt", ["sqrt", "sqrtf"], 1, Neither, Some(0)),
@@ -57,17 +57,17 @@ impl Function {
             Self::Tanh => ("tanh", ["libm_tanh", "libm_tanhf"], 1, Odd, Some(0)),
             Self::Atan2 => ("atan2", ["libm_atan2", "libm_atan2f"], 2, Odd, None),
         };
-        Signature { name, in_c, arity, parity, at_zero }
+        Properties { name, in_c, arity, parity, at_zero }
     }
 
     /// Its name in Rust.
     pub const fn name(self) -> &'static str {
-        self.signature().name
+        self.properties().name
     }
 
     /// How many operands it has.
     pub const fn arity(self) -> usize {
-        self.signature().arity
+        self.properties().arity
     }
 
     /// The function of a name in Rust.
@@ -77,20 +77,4 @@ impl Function {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rows_are_those_of_their_functions() {
-        for (place, function) in Function::ALL.into_iter().enumerate() {
-            let Signature { name, in_c: [double, single], arity, parity, at_zero } = function.signature();
-            assert_eq!(place, function as usize, "{name}");
-            assert_eq!(name, format!("{function:?}").to_lowercase());
-            assert!(double.ends_with(name) && single.ends_with(&format!("{name}f")), "{name}");
-            assert!((1..=2).contains(&arity), "{name}");
-            // What is odd is zero at zero.
-            assert!(arity == 2 || parity != Parity::Odd || at_zero == Some(0), "{name}");
-            assert_eq!(Function::named(name), Some(function));
-        }
-    }
-}
+mod tests;

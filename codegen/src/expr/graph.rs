@@ -8,7 +8,7 @@ use crate::expr::constant::Constant;
 use crate::expr::domains::Domains;
 use crate::expr::symbol::Symbol;
 use gyro_model::Rational;
-use gyro_program::elementary::{Function, Parity, Signature};
+use gyro_program::elementary::{Function, Parity, Properties};
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 use rustc_hash::FxBuildHasher;
@@ -247,7 +247,7 @@ impl Graph {
 
     /// An elementary function of these operands; of one operand both are the same. A sign moves outwards, or vanishes.
     pub fn call(&mut self, function: Function, operands: [ExprId; 2]) -> ExprId {
-        let Signature { arity, parity, at_zero, .. } = function.signature();
+        let Properties { arity, parity, at_zero, .. } = function.properties();
         match (function, operands, at_zero) {
             (_, [Self::ZERO, _], Some(value)) => return self.integer(value),
             (Function::Sqrt, [a, _], _) => {

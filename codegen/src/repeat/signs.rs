@@ -82,7 +82,7 @@ impl Signs {
                         Kind::Scaled => equations.unknown(),
                         Kind::Reciprocal => given[0].clone(),
                         Kind::Call(function) => {
-                            let parity = function.signature().parity;
+                            let parity = function.properties().parity;
                             let same = usize::from(parity != Parity::Neither)..given.len();
                             let firsts: Vec<Form> = same.clone().map(&mut operand).collect();
                             for (slot, first) in same.zip(firsts) {

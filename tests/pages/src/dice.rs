@@ -1,6 +1,6 @@
 //! Decisions and numbers.
 
-use chacha20::ChaCha8Rng;
+use rand_chacha::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use std::f64::consts::PI;
 

@@ -1,8 +1,10 @@
-//! The verifier shares no derivation with the generator: its dependencies are the description, the
-//! signatures of functions, a parser, and numbers.
+//! The verifier shares no derivation with the generator: its dependencies are the description, the signatures of functions, a
+//! parser, and numbers.
 
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 /// What `cargo metadata` says of the workspace's own manifests. It looks at no other package: what other platforms
@@ -52,4 +54,21 @@ fn the_verifier_needs_nothing_of_the_generator() {
     assert_eq!(ours("gyro-program"), ["gyro-program"]);
     assert_eq!(ours("gyro-codegen"), ["gyro-codegen", "gyro-model", "gyro-program"]);
     assert!(ours("gyro-cli").contains(&"gyro-codegen".to_owned()));
+}
+
+/// The texts of all files in a folder.
+fn texts(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let text = |path: &Path| fs::read_to_string(path).expect("a text");
+    entries.flat_map(|path| if path.is_dir() { texts(&path) } else { vec![text(&path)] }).collect()
+}
+
+/// The rest of the table is the generator's: what signs and zeros do to a function the verifier knows by itself.
+#[test]
+fn of_the_table_of_functions_the_verifier_reads_names_and_numbers_of_operands() {
+    let own = texts(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    assert!(own.iter().any(|text| text.contains("gyro_program::elementary::Function;")));
+    for others in ["properties()", "Properties", "Parity", "at_zero"] {
+        assert!(own.iter().all(|text| !text.contains(others)), "the verifier reads {others}");
+    }
 }

@@ -5,7 +5,7 @@ use super::polynomial::{Literal, Monomial, Polynomial};
 use crate::expr::constant::Constant;
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
-use gyro_program::elementary::{Function, Parity, Signature};
+use gyro_program::elementary::{Function, Parity, Properties};
 use rustc_hash::FxHashMap as HashMap;
 use std::rc::Rc;
 
@@ -177,7 +177,7 @@ impl<'a> Expansion<'a> {
     /// f(−x) = −f(x) or f(x): the operand's first coefficient is made positive.
     fn function_of_one(&mut self, function: Function, operand: ExprId) -> Polynomial {
         let (operand, minus) = (self.memo[&operand].clone(), Constant::integer(-1));
-        let Signature { parity, at_zero, .. } = function.signature();
+        let Properties { parity, at_zero, .. } = function.properties();
         match (operand.leading(), at_zero) {
             (None, Some(0)) => Polynomial::default(),
             (None, Some(value)) => Polynomial::term(Constant::integer(value), Monomial::one()),

@@ -61,7 +61,7 @@ fn every_function_of_one_operand_is_read_back() {
         if function.arity() == 1 {
             case.module.code = code.replace(".tanh()", &format!(".{}()", function.name()));
             case.exported = gyro_export::c(&case.model, &case.module.code, precision).expect("C");
-            let name = function.signature().in_c[precision as usize];
+            let name = function.properties().in_c[precision as usize];
             assert!(
                 case.exported.source.matches(&format!("{name}(")).count() > 1,
                 "{name} is brought and called"
