@@ -13,6 +13,7 @@ mod inertia;
 mod left_out;
 mod merge;
 mod names;
+mod numbers;
 mod page;
 mod robot;
 mod shapes;

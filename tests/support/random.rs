@@ -1,12 +1,12 @@
 //! Seeded random states.
 
 use crate::Engine;
-use chacha20::ChaCha8Rng;
 use gyro_model::{
     CoordinateKind, JointCoordinate, JointKind, JointStartSpec, Model, Number, Start, Support, parse_decimal,
 };
 use gyro_sim::Mechanism;
 use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 /// Seeded random numbers, the same on every machine.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use super::element::settled;
 use super::merge::{Merged, Place};
 use super::names::{Names, snake_case};
-use super::page::{euler_parameters, vector};
+use super::numbers::{euler_parameters, vector};
 use super::robot::{Link, Robot};
 use nalgebra::Rotation3;
 use std::fmt::Write as _;

@@ -2,13 +2,14 @@
 
 use super::element::settled;
 use super::inertia::{rounded, tensor};
-use super::merge::{Body, Merged, Place, Root, Settled, on_grid};
+use super::merge::{Body, Merged, Place, Root, Settled};
 use super::names::{Names, snake_case};
+use super::numbers::{euler_parameters, vector};
 use super::robot::{Joint, Kind, Limit, Link, Robot};
 use super::wrenches::Wrench;
 use super::{Wishes, frames, wrenches};
 use crate::words;
-use nalgebra::{IsometryMatrix3, Point3, UnitQuaternion, Vector3};
+use nalgebra::{IsometryMatrix3, Point3, Vector3};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -394,18 +395,4 @@ impl Page<'_> {
             );
         }
     }
-}
-
-pub(super) fn vector(v: &Vector3<f64>) -> String {
-    list(v.as_slice())
-}
-
-pub(super) fn euler_parameters(pose: &IsometryMatrix3<f64>) -> String {
-    let p = UnitQuaternion::from_rotation_matrix(&pose.rotation);
-    list(&[p.w, p.i, p.j, p.k])
-}
-
-fn list(values: &[f64]) -> String {
-    let texts: Vec<String> = values.iter().map(|x| format!("{:?}", on_grid(*x) + 0.0)).collect();
-    format!("[{}]", texts.join(", "))
 }

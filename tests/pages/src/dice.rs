@@ -1,7 +1,7 @@
 //! Decisions and numbers.
 
-use rand_chacha::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 
 /// Seeded decisions.

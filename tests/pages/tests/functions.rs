@@ -1,10 +1,10 @@
 //! Modules with some functions are modules with all of them, less what was not asked for.
 
-use chacha20::ChaCha8Rng;
 use gyro_codegen::{Functions, Group, Kernel, Module};
 use gyro_verifier::{Depth, verify};
 use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 /// Seeds of model files; any will do.
 const SEEDS: std::ops::Range<u64> = 3000..3005;

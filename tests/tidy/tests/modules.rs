@@ -46,7 +46,8 @@ pub fn stages(source: &Path) -> BTreeMap<String, BTreeSet<String>> {
         .collect();
     let mut found: BTreeMap<String, BTreeSet<String>> =
         tops.iter().map(|top| (top.clone(), BTreeSet::new())).collect();
-    for (module, file) in &files {
+    let is_test = |module: &str| module.split("::").any(|part| part == "tests");
+    for (module, file) in files.iter().filter(|(module, _)| !is_test(module)) {
         let (top, mut paths) = (first(module), Paths::default());
         paths.visit_file(file);
         let named = paths.found.iter().filter_map(|path| in_root(module, path));

@@ -1,5 +1,5 @@
-//! The verifier shares no derivation with the generator: its dependencies are the description, the signatures of functions, a
-//! parser, and numbers.
+//! The verifier shares no derivation with the generator: its dependencies are the description, the signatures of
+//! functions, a parser, and numbers.
 
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
