@@ -58,14 +58,14 @@ fn a_run_of_another_model_file_is_shown_over_the_first() {
 fn two_runs_are_on_one_page() {
     let folder = Folder::new("two");
     let page = folder.0.join("deep/pendulum.html");
-    let options = ["--t-end", "0.1", "--every", "0.01", "--compare", "length=0.4,dense", "--reactions"];
+    let options = ["--t-end", "0.1", "--every", "0.01", "--compare", "length=0.4,assembled", "--reactions"];
     let output = show("examples/pendulum.toml", &page, &options);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(String::from_utf8_lossy(&output.stdout).contains("22 samples"), "two runs of eleven");
     let head = head(&page);
     let names: Vec<&str> =
         head["scenes"].as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap()).collect();
-    assert_eq!(names, ["length = 0.5, in-process", "length = 0.4, dense"]);
+    assert_eq!(names, ["length = 0.5, in-process", "length = 0.4, assembled"]);
     for (scene, length) in head["scenes"].as_array().unwrap().iter().zip([0.5, 0.4]) {
         assert_eq!(scene["n"], 11);
         assert_eq!(scene["mechanism"]["joints"][0]["kind"], "Revolute");

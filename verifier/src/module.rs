@@ -128,6 +128,11 @@ pub(crate) fn counts(model: &Model, joints: Option<&JointLayout>) -> Counts {
     }
 }
 
+/// How many numbers a joint state has; none of a mechanism without one.
+fn joint_numbers(joints: Option<&JointLayout>, counts: &Counts) -> usize {
+    joints.map_or(0, |_| Space::Joints.len(counts))
+}
+
 /// The outputs that are frames.
 pub(crate) fn frames(model: &Model) -> impl Iterator<Item = &Output> {
     model.outputs.iter().filter(|output| matches!(output.kind, OutputKind::Velocity(_)))
@@ -177,7 +182,7 @@ impl Module {
             state: Space::State.len(&counts),
             accelerations: n_accelerations,
             rows: counts.rows,
-            joints: Space::Joints.len(&counts),
+            joints: joint_numbers(joints.as_ref(), &counts),
             charts: n_charts.unwrap_or(0),
             tables: tables.len(),
             derived: number("derived").unwrap_or(0),
@@ -277,7 +282,7 @@ impl Module {
             ("phi_q_pattern", self.phi_q_pattern.len(), counts.phi_q),
             ("phi_pi_pattern", self.phi_pi_pattern.len(), counts.phi_pi),
             ("start", self.start.len(), Space::State.len(counts)),
-            ("joint_start", self.joint_start.len(), Space::Joints.len(counts)),
+            ("joint_start", self.joint_start.len(), joint_numbers(self.joints.as_ref(), counts)),
         ];
         let sizes = expected.filter_map(of_function).chain(patterns);
         for (name, found, expected) in sizes {
