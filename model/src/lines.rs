@@ -13,7 +13,7 @@ pub struct Lines {
     pub source: String,
     /// Times, s, ascending, and values. At least two.
     pub rows: Vec<[f64; 2]>,
-    /// Indices into [`Model::inputs`] of t0, x, v and a.
+    /// Indices into [`crate::Model::inputs`] of t0, x, v and a.
     pub inputs: [usize; 4],
 }
 
