@@ -98,8 +98,8 @@ fn an_end_by_an_event_beside_a_sample_is_compared() {
     }
 }
 
-/// A slider that a motion `t^12` carries along by friction: in the first hundredth of a second it moves by 1e-26 m, of
-/// which no step makes an error that matters.
+/// An arm that turns by `t^12`, and a load that friction in its hinge carries along: in the first hundredth of a second
+/// the arm turns by 1e-24 rad, of which no step makes an error that matters.
 #[test]
 fn a_run_in_which_hardly_anything_moves_is_not_worthless() {
     let folder = Folder::new("hardly");
