@@ -15,7 +15,7 @@ pub(crate) use begin::{CheckArgs, NewArgs, SchemaArgs, Template};
 pub(crate) use export::{CArgs, CosimulationMethod, ExportArgs, FmuArgs, Target, WasmArgs};
 pub(crate) use show::{Change, ShowArgs};
 pub(crate) use simulate::{Effort, Engine, EventSetting, InputSetting, Precision, SimulateArgs, table};
-pub(crate) use sweep::{MergeArgs, Shard, SweepArgs, SweepCommand};
+pub(crate) use sweep::{MergeArgs, Shard, SweepArgs, SweepCommand, SweepEngine};
 
 /// The exit codes of every command.
 pub const EXIT_CODES: &str = "Exit codes:
@@ -78,7 +78,7 @@ pub enum Command {
     Cache(CacheArgs),
     Completions(CompletionsArgs),
     #[command(hide = true)]
-    #[cfg(feature = "answer")]
+    #[cfg(feature = "reports")]
     Answer(AnswerArgs),
 }
 
@@ -110,7 +110,7 @@ pub struct CompletionsArgs {
 }
 
 /// Answer requests on standard input with the runtime-assembled model: what `report` asks
-#[cfg(feature = "answer")]
+#[cfg(feature = "reports")]
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   {program} answer models/gyroscope.toml careful f64")]

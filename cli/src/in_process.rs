@@ -92,12 +92,17 @@ pub(crate) fn follow<T: Native + Real>(
     for (index, value) in scene.parameters().into_iter().enumerate() {
         mechanism.set_parameter(index, T::constant(value));
     }
-    let runs = gyro_jit::Runs {
+    let runs = of_runs(scene, runs);
+    gyro_jit::simulate(mechanism, runs, (&scene.settings, &scene.approach), &scene.start, tell)
+}
+
+/// What is known of these runs of a scene beside their plan.
+pub(crate) fn of_runs(scene: &Scene, runs: Option<Runs>) -> gyro_jit::Runs {
+    gyro_jit::Runs {
         joint_space: scene.offers.joint_space,
         is_examined: runs.is_some_and(Runs::is_examined),
         is_for_all: runs.is_none(),
-    };
-    gyro_jit::simulate(mechanism, runs, (&scene.settings, &scene.approach), &scene.start, tell)
+    }
 }
 
 /// Generates and compiles these functions; a proof under way hears of what is compiled.

@@ -1,7 +1,8 @@
 //! The command line of the project, as a library: `gyro` is a binary of it, and `cargo xtask` adds the commands of
 //! those who develop the project. What is public besides [`Cli`] and [`Command`] is for these.
+#![cfg_attr(not(feature = "reports"), allow(dead_code, reason = "reports alone use some of it"))]
 
-#[cfg(feature = "answer")]
+#[cfg(feature = "reports")]
 mod answer;
 mod args;
 #[cfg(feature = "jit")]
@@ -45,6 +46,7 @@ pub mod programs;
 pub mod progress;
 mod proof;
 mod remarks;
+#[cfg(feature = "reports")]
 mod report;
 mod rounding;
 mod runs;
@@ -87,10 +89,15 @@ impl Command {
             Self::Inspect(args) => inspect::inspect(args),
             Self::Import(args) => urdf::import(args),
             Self::Verify(args) => verify::verify_models(args),
+            #[cfg(feature = "reports")]
             Self::Report(args) => report::report(args),
+            #[cfg(not(feature = "reports"))]
+            Self::Report(_) => {
+                Err(Failure::Usage("this program was built without the feature `reports`".to_owned()))
+            }
             Self::Cache(args) => cache::cache(args),
             Self::Completions(args) => invocation::completions(args),
-            #[cfg(feature = "answer")]
+            #[cfg(feature = "reports")]
             Self::Answer(args) => answer::answer(args),
         }
     }

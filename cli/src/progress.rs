@@ -1,20 +1,82 @@
-//! A progress bar on standard error, for long runs and for terminals only.
+//! How far long work is, on standard error: a line that is written over on terminals, lines of their own elsewhere.
 
 use crate::remarks;
 use gyro_model::Model;
 use gyro_runner::{Forecast, duration_words};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, Write as _};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
+/// A line of a terminal that is written over. Nowhere else is it written, nor if nothing is to be said.
+#[derive(Debug)]
+struct Line {
+    is_shown: bool,
+    began: Instant,
+    /// When it was written last, if it was.
+    written: Option<Instant>,
+}
+
+/// A line is not written more often.
+const EVERY: Duration = Duration::from_millis(100);
+
+/// Longer lines would be broken by narrow terminals, and then no longer be written over.
+const COLUMNS: usize = 79;
+
+impl Line {
+    fn new() -> Self {
+        let is_shown = std::io::stderr().is_terminal() && !remarks::is_quiet();
+        Self { is_shown, began: Instant::now(), written: None }
+    }
+
+    /// Writes the line, unless it has just been written.
+    fn show(&mut self, words: impl FnOnce() -> String) {
+        if self.is_shown && self.written.is_none_or(|at| at.elapsed() >= EVERY) {
+            let words: String = words().chars().take(COLUMNS).collect();
+            // Nobody is left to be told if standard error is closed.
+            let _ = write!(std::io::stderr(), "\r\x1b[2K{words}");
+            self.written = Some(Instant::now());
+        }
+    }
+
+    /// A bar for what part is done, and how long the rest takes at the pace so far.
+    fn bar(&self, part: f64) -> String {
+        const WIDTH: f64 = 30.0;
+        let part = part.clamp(0.0, 1.0);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "up to the width of the bar"
+        )]
+        let [done, all] = [part * WIDTH, WIDTH].map(|columns| columns as usize);
+        let left = match part > 0.0 {
+            true => {
+                format!("{} left", duration_words(self.began.elapsed().as_secs_f64() * (1.0 / part - 1.0)))
+            }
+            false => String::new(),
+        };
+        format!("[{}{}] {left}", "=".repeat(done), " ".repeat(all - done))
+    }
+
+    /// Takes the line away.
+    fn clear(&mut self) {
+        if self.written.take().is_some() {
+            let _ = write!(std::io::stderr(), "\r\x1b[2K");
+        }
+    }
+}
+
+impl Drop for Line {
+    fn drop(&mut self) {
+        self.clear();
+    }
+}
+
 /// Shows how far a run is once it has taken a while.
 #[derive(Debug)]
 pub struct Progress {
-    began: Instant,
     t_end: f64,
-    bar: Option<ProgressBar>,
+    line: Line,
 }
 
 /// A run shorter than this is over before anyone has read the bar.
@@ -23,12 +85,9 @@ const PATIENCE: Duration = Duration::from_millis(500);
 /// Whoever waits for so long, s, is told beforehand.
 const LONG: f64 = 10.0;
 
-/// Positions of the bar.
-const DIVISIONS: u64 = 1000;
-
 impl Progress {
     pub fn new(t_end: f64) -> Self {
-        Self { began: Instant::now(), t_end, bar: None }
+        Self { t_end, line: Line::new() }
     }
 
     /// Says how long the run will take, if that is long.
@@ -42,41 +101,23 @@ impl Progress {
 
     /// The run has reached this time.
     pub fn reached(&mut self, t: f64) {
-        if remarks::is_quiet() || self.bar.is_none() && self.began.elapsed() < PATIENCE {
+        if self.line.began.elapsed() < PATIENCE {
             return;
         }
-        let bar = self.bar.get_or_insert_with(bar);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
-        bar.set_position((t / self.t_end * DIVISIONS as f64) as u64);
-        bar.set_message(format!("t = {t:.3} s of {} s", self.t_end));
+        let bar = self.line.bar(t / self.t_end);
+        self.line.show(|| format!("{bar}, t = {t:.3} s of {} s", self.t_end));
     }
 
     /// Takes the bar away.
-    pub fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
+    pub fn finish(&mut self) {
+        self.line.clear();
     }
-}
-
-/// A bar that draws on standard error, and nowhere if that is not a terminal.
-fn bar() -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {percent:>3} % {msg}, {eta} left");
-    ProgressBar::new(DIVISIONS).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-}
-
-/// A bar that draws unless nothing is to be said.
-fn shown(bar: ProgressBar) -> ProgressBar {
-    if remarks::is_quiet() {
-        bar.set_draw_target(ProgressDrawTarget::hidden());
-    }
-    bar
 }
 
 /// Says what is under way until it is dropped: at once on a terminal, elsewhere in lines, and only if it takes a while.
 #[derive(Debug)]
 pub struct Spinner {
-    bar: ProgressBar,
+    _line: Line,
     /// Dropped at the end, which the thread that writes lines hears.
     _end: Option<Sender<()>>,
 }
@@ -87,17 +128,11 @@ const NEXT_LINES: Duration = Duration::from_secs(30);
 
 impl Spinner {
     pub fn new(message: String) -> Self {
+        let mut line = Line::new();
         let is_terminal = std::io::stderr().is_terminal();
-        let end = (!is_terminal).then(|| in_lines(message.clone(), remarks::note));
-        let bar = shown(ProgressBar::new_spinner().with_message(message));
-        bar.enable_steady_tick(Duration::from_millis(100));
-        Self { bar, _end: end }
-    }
-}
-
-impl Drop for Spinner {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
+        line.show(|| message.clone());
+        let end = (!is_terminal).then(|| in_lines(message, remarks::note));
+        Self { _line: line, _end: end }
     }
 }
 
@@ -144,37 +179,36 @@ fn in_lines(message: String, say: impl Fn(&str) + Send + 'static) -> Sender<()> 
 /// Shows how much of a list is done, one list after the other.
 #[derive(Debug)]
 pub struct Count {
-    bar: ProgressBar,
     prefix: String,
+    what: String,
+    done: u64,
+    all: u64,
+    line: Line,
 }
 
 impl Count {
     pub fn new(prefix: String) -> Self {
-        let style = ProgressStyle::with_template("{prefix} {bar:30} {pos}/{len} {msg} ({elapsed})");
-        let bar =
-            shown(ProgressBar::new(1).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())));
-        bar.enable_steady_tick(Duration::from_millis(200));
-        Self { bar, prefix }
+        Self { prefix, what: String::new(), done: 0, all: 1, line: Line::new() }
     }
 
     /// A new list of so many.
-    pub fn begin(&self, what: &str, length: u64) {
-        self.bar.set_prefix(format!("{} {what}", self.prefix));
-        self.bar.set_length(length);
-        self.bar.set_position(0);
-        self.bar.set_message("");
+    pub fn begin(&mut self, what: &str, all: u64) {
+        self.what = what.to_owned();
+        (self.done, self.all) = (0, all);
+        self.show("");
     }
 
-    /// One of them is done.
-    pub fn advance(&self, what: &str) {
-        self.bar.inc(1);
-        self.bar.set_message(what.to_owned());
+    /// Some of them are done.
+    pub fn advance(&mut self, number: u64, what: &str) {
+        self.done += number;
+        self.show(what);
     }
-}
 
-impl Drop for Count {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
+    #[expect(clippy::cast_precision_loss, reason = "for people to read")]
+    fn show(&mut self, last: &str) {
+        let Self { prefix, what, done, all, .. } = self;
+        let bar = self.line.bar(*done as f64 / *all as f64);
+        self.line.show(|| format!("{prefix} {what} {bar} {done}/{all} {last}"));
     }
 }
 

@@ -12,9 +12,11 @@ mod store;
 mod vocabulary;
 mod workers;
 
-use crate::args::{Shard, SweepArgs, SweepCommand};
+use crate::args::{Shard, SweepArgs, SweepCommand, SweepEngine};
 use crate::failure::Failure;
 use crate::folder::Folder;
+use crate::progress::Count;
+use crate::proof::Proof;
 use crate::remarks::say;
 use crate::words::{count, number};
 use crate::write::{Known, digest, write};
@@ -22,13 +24,13 @@ use crate::{files, programs, remarks};
 use gyro_runner::{Settings, duration_words, protocol};
 use gyro_sweep::child::Job;
 use gyro_sweep::record::{self, Block};
-use indicatif::{ProgressBar, ProgressStyle};
 use loaded::Loaded;
-use program::{Program, Way, program};
+use program::{Program, Way};
 use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::Path;
 use std::process::Command;
+use std::sync::Mutex;
 use std::time::Instant;
 use store::{Head, Store};
 use workers::{Records, Workers};
@@ -48,11 +50,11 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     if args.mpi {
         return ranks::sweep(loaded, args, &folder);
     }
-    let sweep = Sweep::new(loaded, args)?;
+    let (sweep, proof) = Sweep::new(loaded, args)?;
     if args.estimate {
         return sweep.estimate();
     }
-    sweep.fill(&folder, args.resume, |places, keep| sweep.on_cores(places, keep))
+    sweep.fill(proof, (&folder, args.resume), |places, keep| sweep.on_cores(places, keep))
 }
 
 /// Takes records, in their order.
@@ -63,31 +65,47 @@ struct Sweep {
     loaded: Loaded,
     way: Way,
     program: Program,
-    job: Job,
+    /// Whether a long sweep is run by a program that is compiled for it.
+    compiles_if_long: bool,
+    job: &'static Job,
     head: Head,
     threads: NonZeroUsize,
 }
 
 impl Sweep {
-    fn new(loaded: Loaded, args: &SweepArgs) -> Result<Self, Failure> {
+    /// A sweep, and the proof of what runs in this process, which has begun.
+    fn new(loaded: Loaded, args: &SweepArgs) -> Result<(Self, Option<Proof>), Failure> {
         let way = Way::of(&loaded);
-        let program = program(&loaded.study, &loaded.scene, way, args.native)?;
-        let job = job(&loaded);
-        let head = head(&loaded, &job, &program).with(args.shard.unwrap_or(Shard::WHOLE));
+        let (program, proof, digest) = match args.engine() {
+            Some(SweepEngine::Generated) => {
+                let digest = program::digest_of(&program::scheduled(&loaded)?, way, args.native);
+                (Program::Compiled(program::compiled(&loaded, way, args.native)?), None, digest)
+            }
+            Some(SweepEngine::InProcess) | None => {
+                let (program, proof) = program::in_process(&loaded, way)?;
+                let digest = program::digest_of(program.mechanism.scheduled(), way, false);
+                (Program::InProcess(Mutex::new(Box::new(program))), Some(proof), digest)
+            }
+        };
+        // One job for the life of this process.
+        let job = &*Box::leak(Box::new(job(&loaded)));
+        let head = head(&loaded, job, digest).with(args.shard.unwrap_or(Shard::WHOLE));
         let cores = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-        Ok(Self { loaded, way, program, job, head, threads: args.threads.unwrap_or(cores) })
+        let threads = args.threads.unwrap_or(cores);
+        let compiles_if_long = args.engine().is_none();
+        Ok((Self { loaded, way, program, compiles_if_long, job, head, threads }, proof))
     }
 
-    fn workers(&self) -> Workers<'_> {
+    fn workers<'a>(&'a self, program: &'a Program) -> Workers<'a> {
         let assembled = (self.way == Way::Whole).then_some(&self.loaded.scene.page);
-        Workers { program: &self.program.path, job: &self.job, assembled, threads: self.threads }
+        Workers { program, job: self.job, assembled, threads: self.threads }
     }
 
     /// Fills a folder with results: `run` runs the blocks at places that it does not have yet.
     fn fill(
         &self,
-        folder: &Path,
-        is_resumed: bool,
+        proof: Option<Proof>,
+        (folder, is_resumed): (&Path, bool),
         run: impl FnOnce(Range<u64>, &mut Keep<'_>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let opened = Folder::open(folder)?;
@@ -98,6 +116,10 @@ impl Sweep {
         let place = self.loaded.place.to_string_lossy();
         write(&folder.join(store::PLACE), place.as_bytes(), Known::Place).map_err(store::stays)?;
         self.run(&mut store, run)?;
+        if let Some(proof) = proof {
+            let (standing, _) = proof.settle()?;
+            remarks::note(&format!("engine in-process, {}", standing.words()));
+        }
         let is_part = self.head.shard[1] > 1;
         if is_part {
             return say(&format!(
@@ -117,10 +139,9 @@ impl Sweep {
         if first >= end {
             return Ok(());
         }
-        let progress = Progress::new(
-            self.head.scenarios.min(end * u64::from(self.head.block)),
-            first * u64::from(self.head.block),
-        );
+        let block = u64::from(self.head.block);
+        let mut progress = Count::new(self.head.name.clone());
+        progress.begin("scenarios", self.head.scenarios.min(end * block) - first * block);
         let (mut done, mut failed) = (0, 0);
         let nonsense = |error| Failure::Run(format!("the program answers nonsense: {error}"));
         let mut keep = |records: Records| {
@@ -130,12 +151,13 @@ impl Sweep {
                 done += u64::from(block.count);
                 failed += block.errors.len() as u64;
             }
-            progress.advance(done - before, failed);
+            progress
+                .advance(done - before, &if failed > 0 { format!("{failed} failed") } else { String::new() });
             store.append(&records.bytes, records.count)
         };
         let began = Instant::now();
         run(first..end, &mut keep)?;
-        progress.finish();
+        drop(progress);
         #[expect(clippy::cast_precision_loss, reason = "for people to read")]
         let rate = done as f64 / began.elapsed().as_secs_f64();
         let failures = if failed > 0 { format!(", {failed} of them failed") } else { String::new() };
@@ -144,16 +166,29 @@ impl Sweep {
 
     /// Runs blocks on the cores of this machine, and says first what they will cost.
     fn on_cores(&self, places: Range<u64>, keep: &mut Keep<'_>) -> Result<(), Failure> {
-        let mut next = places.start;
-        let tell = |seconds, run: Range<u64>| {
+        let (mut next, mut left) = (places.start, 0.0);
+        let tell = |each: f64, run: Range<u64>| {
             next = run.end;
-            remarks::note(&self.cost(seconds, places.end - next));
+            left = each * blocks(places.end - next) / self.cores();
+            remarks::note(&self.cost(each, places.end - next));
         };
         self.probe(places.clone(), tell, &mut *keep)?;
+        let mut program = &self.program;
+        let compiled;
+        if self.compiles_if_long && left > LONG {
+            remarks::note("that is long enough to have rustc compile the mechanism first");
+            compiled = Program::Compiled(program::compiled(&self.loaded, self.way, false)?);
+            program = &compiled;
+        }
         match next < places.end {
-            true => self.workers().run(next..places.end, |n| self.head.block(n), keep),
+            true => self.workers(program).run(next..places.end, |n| self.head.block(n), keep),
             false => Ok(()),
         }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "a number of cores")]
+    fn cores(&self) -> f64 {
+        self.threads.get() as f64
     }
 
     /// Runs the first of some blocks, and more where it is over at once, which is mostly the start of a program; tells
@@ -167,11 +202,9 @@ impl Sweep {
         let mut run = |places: Range<u64>| {
             let began = Instant::now();
             let cores = (self.threads.get() as u64).min(places.end - places.start);
-            self.workers().run(places.clone(), |n| self.head.block(n), &mut keep)?;
-            #[expect(clippy::cast_precision_loss, reason = "a number of blocks")]
-            let blocks = (places.end - places.start) as f64;
-            #[expect(clippy::cast_precision_loss, reason = "a number of cores")]
-            Ok::<f64, Failure>(began.elapsed().as_secs_f64() * cores as f64 / blocks)
+            self.workers(&self.program).run(places.clone(), |n| self.head.block(n), &mut keep)?;
+            let each = began.elapsed().as_secs_f64() / blocks(places.end - places.start);
+            Ok::<f64, Failure>(each * blocks(cores))
         };
         let mut end = places.start + 1;
         let mut each = run(places.start..end)?;
@@ -185,17 +218,15 @@ impl Sweep {
     }
 
     /// Says what so many blocks will cost, from what one of them takes on one core, s.
-    fn cost(&self, one: f64, blocks: u64) -> String {
+    fn cost(&self, one: f64, rest: u64) -> String {
         #[expect(clippy::cast_precision_loss, reason = "for people to read")]
-        let [blocks, threads, scenarios] =
-            [blocks as f64, self.threads.get() as f64, self.head.scenarios as f64];
-        let bytes = scenarios * 8.0 * self.head.width as f64;
+        let bytes = self.head.scenarios as f64 * 8.0 * self.head.width as f64;
         format!(
             "{} in blocks of {}; a block takes {} s, the rest {} on {}, and all {} MB of disk",
             count(self.head.scenarios, "scenario"),
             self.head.block,
             number(one, 2),
-            duration_words(one * blocks / threads),
+            duration_words(one * blocks(rest) / self.cores()),
             count(self.threads.get() as u64, "core"),
             number(bytes / 1e6, 2),
         )
@@ -213,10 +244,13 @@ impl Sweep {
 const QUICK: f64 = 0.05;
 const PROBE: u64 = 64;
 
-impl Way {
-    fn of(loaded: &Loaded) -> Self {
-        if starts::are_alike(&loaded.study, &loaded.scene) { Self::Packs } else { Self::Whole }
-    }
+/// A sweep of which more than this is left, s, is run by a program that rustc compiles: that takes ten seconds and more,
+/// and runs scenarios up to several times as fast.
+const LONG: f64 = 30.0;
+
+#[expect(clippy::cast_precision_loss, reason = "a number of blocks")]
+fn blocks(number: u64) -> f64 {
+    number as f64
 }
 
 fn job(loaded: &Loaded) -> Job {
@@ -240,7 +274,7 @@ fn job(loaded: &Loaded) -> Job {
     }
 }
 
-fn head(loaded: &Loaded, job: &Job, program: &Program) -> Head {
+fn head(loaded: &Loaded, job: &Job, program: String) -> Head {
     let mut bytes = Vec::new();
     protocol::write(&mut bytes, job).expect("memory takes every write");
     Head {
@@ -248,7 +282,7 @@ fn head(loaded: &Loaded, job: &Job, program: &Program) -> Head {
         name: loaded.name.clone(),
         study: loaded.text.clone(),
         path: loaded.path.clone(),
-        program: program.digest.clone(),
+        program,
         job: digest(&bytes),
         commit: commit(),
         seed: job.plan.seed,
@@ -265,31 +299,4 @@ fn commit() -> String {
     let version = env!("CARGO_PKG_VERSION").to_owned();
     git.arg("-C").arg(files::root()).args(["describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]);
     programs::output(&mut git).map_or(version, |words| words.trim().to_owned())
-}
-
-/// How far a sweep is, on terminals.
-struct Progress(ProgressBar);
-
-impl Progress {
-    fn new(scenarios: u64, done: u64) -> Self {
-        let style = ProgressStyle::with_template(
-            "{bar:40} {human_pos} of {human_len} scenarios, {per_sec}, {eta} left{msg}",
-        );
-        let bar =
-            ProgressBar::new(scenarios).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        bar.set_position(done);
-        bar.reset_eta();
-        Self(bar)
-    }
-
-    fn advance(&self, scenarios: u64, failed: u64) {
-        self.0.inc(scenarios);
-        if failed > 0 {
-            self.0.set_message(format!(", {failed} failed"));
-        }
-    }
-
-    fn finish(&self) {
-        self.0.finish_and_clear();
-    }
 }

@@ -62,7 +62,21 @@ pub fn check(path: &Path, known: Known) -> Result<(), Failure> {
 
 fn is_input(path: &Path) -> bool {
     let inputs = INPUTS.lock().unwrap_or_else(PoisonError::into_inner);
-    inputs.iter().any(|input| same_file::is_same_file(input, path).unwrap_or(false))
+    inputs.iter().any(|input| is_same(input, path).unwrap_or(false))
+}
+
+/// Whether two paths lead to one file, by links of either kind.
+#[cfg(unix)]
+fn is_same(one: &Path, other: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    let [one, other] = [fs::metadata(one)?, fs::metadata(other)?];
+    Ok((one.dev(), one.ino()) == (other.dev(), other.ino()))
+}
+
+/// Whether two paths lead to one file by symbolic links.
+#[cfg(not(unix))]
+fn is_same(one: &Path, other: &Path) -> io::Result<bool> {
+    Ok(fs::canonicalize(one)? == fs::canonicalize(other)?)
 }
 
 fn is_own(path: &Path, known: Known) -> bool {

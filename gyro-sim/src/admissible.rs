@@ -66,11 +66,23 @@ pub fn check<T: Real, const N: usize, const R: usize>(
     rules: impl FnOnce([f64; N]) -> [(u16, Rule); R],
 ) -> Result<(), Inadmissible> {
     let values = values.map(T::to_f64);
+    check_all::<T>(&values, rules(values))
+}
+
+/// The same of any number of parameters and rules.
+///
+/// # Errors
+/// As [`check`].
+#[inline]
+pub fn check_all<T: Real>(
+    values: &[f64],
+    rules: impl IntoIterator<Item = (u16, Rule)>,
+) -> Result<(), Inadmissible> {
     let is_number = |value: &f64| *value == 0.0 || (SIZES[0]..=SIZES[1]).contains(&value.abs());
-    if let Some((parameter, _)) = (0u16..).zip(&values).find(|(_, value)| !is_number(value)) {
+    if let Some((parameter, _)) = (0u16..).zip(values).find(|(_, value)| !is_number(value)) {
         return Err(Inadmissible { parameter });
     }
-    match rules(values).into_iter().find(|(_, rule)| !rule.holds::<T>()) {
+    match rules.into_iter().find(|(_, rule)| !rule.holds::<T>()) {
         Some((parameter, _)) => Err(Inadmissible { parameter }),
         None => Ok(()),
     }

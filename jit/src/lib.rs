@@ -38,6 +38,7 @@
 //! ```
 #![deny(missing_docs)]
 
+mod admissible;
 #[cfg(feature = "machine-code")]
 mod calls;
 #[cfg(feature = "machine-code")]
@@ -54,6 +55,7 @@ mod mechanism;
 mod native;
 mod run;
 
+pub use admissible::check;
 #[cfg(feature = "machine-code")]
 pub use calls::{Library, NotLoaded, Sizes};
 pub use contract::{Independent, OnHeap};

@@ -103,6 +103,15 @@ impl<T: Scalar, E: Engine<T>> InProcess<T, E> {
         is_there
     }
 
+    /// Sets all parameters, in the order of the model file.
+    ///
+    /// # Panics
+    /// If there are not as many.
+    pub fn set_parameters(&mut self, values: &[T]) {
+        self.own[..self.shared.layout.first_derived].copy_from_slice(values);
+        self.set_up();
+    }
+
     /// The parameters, in the order of the model file.
     pub fn parameters(&self) -> &[T] {
         &self.own[..self.shared.layout.first_derived]

@@ -1,14 +1,14 @@
-//! The program that runs scenarios: all but its few lines.
+//! Scenarios are run: in this process, or by a program of which all but a few lines are here.
 //!
-//! It reads a [`Job`] from standard input and then, until the input ends, a [`Unit`] at a time; of each block it writes
-//! the record to standard output. A scenario that fails is a row with its error; no scenario ends the program.
+//! The program reads a [`Job`] from standard input and then, until the input ends, a [`Unit`] at a time; of each block
+//! it writes the record to standard output. A scenario that fails is a row with its error; no scenario ends the program.
 
 mod joint;
-mod packs;
-mod sensitive;
+pub(crate) mod packs;
+pub(crate) mod sensitive;
 mod variational;
 mod watch;
-mod whole;
+pub(crate) mod whole;
 
 use crate::keep::sample_times;
 use crate::plan::{Source, Target};
@@ -131,7 +131,7 @@ impl Job {
 
 /// Where some scenarios start: for each of them one, or nothing where all start alike.
 #[derive(Clone, Copy)]
-struct Outsets<'u> {
+pub(crate) struct Outsets<'u> {
     starts: &'u [Result<Start, String>],
     moved: &'u [Vec<f64>],
     slopes: &'u [StartSlopes],
@@ -154,12 +154,12 @@ impl Outsets<'_> {
 }
 
 /// What runs scenarios one after the other.
-trait Runs {
+pub(crate) trait Runs {
     /// Runs scenarios that follow each other and appends what is kept of them.
     fn run(&mut self, block: &mut Block, from: Outsets<'_>);
 
     /// Runs the blocks of a unit and tells of them in their order.
-    fn run_unit(&mut self, blocks: Blocks<'_>, unit: &Unit, tell: &mut Tell<'_>) -> io::Result<()> {
+    fn run_blocks(&mut self, blocks: Blocks<'_>, unit: &Unit, tell: &mut Tell<'_>) -> io::Result<()> {
         let mut rest = Outsets { starts: &unit.starts, moved: &unit.moved, slopes: &unit.slopes };
         for mut block in blocks {
             let own = rest.take(block.count as usize);
@@ -171,13 +171,43 @@ trait Runs {
 }
 
 /// Blocks without numbers: what is to be run.
-type Blocks<'a> = &'a mut dyn Iterator<Item = Block>;
+pub(crate) type Blocks<'a> = &'a mut dyn Iterator<Item = Block>;
 
 /// Hears of blocks that have been run.
-type Tell<'a> = dyn FnMut(Block) -> io::Result<()> + 'a;
+pub(crate) type Tell<'a> = dyn FnMut(Block) -> io::Result<()> + 'a;
+
+/// What runs the scenarios of a job.
+pub struct Scenarios {
+    job: &'static Job,
+    runs: Box<dyn Runs>,
+}
+
+impl std::fmt::Debug for Scenarios {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Scenarios").field("job", self.job).finish_non_exhaustive()
+    }
+}
+
+impl Scenarios {
+    pub(crate) fn new(job: &'static Job, runs: impl Runs + 'static) -> Self {
+        Self { job, runs: Box::new(runs) }
+    }
+
+    /// Runs the blocks of a unit and tells of them in their order.
+    ///
+    /// # Errors
+    /// Those of `tell`.
+    pub fn run(&mut self, unit: &Unit, tell: &mut dyn FnMut(Block) -> io::Result<()>) -> io::Result<()> {
+        let mut blocks = unit.blocks.iter().map(|block| {
+            let (first, count) = self.job.range(*block);
+            Block { first, count, ..Block::default() }
+        });
+        self.runs.run_blocks(&mut blocks, unit, tell)
+    }
+}
 
 /// Reads the job, then units; answers with records.
-fn serve<R: Runs>(begin: impl FnOnce(&'static Job) -> R) -> ExitCode {
+fn serve(begin: impl FnOnce(&'static Job) -> Scenarios) -> ExitCode {
     match answer(begin, &mut io::stdin().lock(), &mut io::stdout().lock()) {
         Ok(()) => ExitCode::SUCCESS,
         // Nobody is left to be told if standard error is closed.
@@ -191,23 +221,18 @@ fn serve<R: Runs>(begin: impl FnOnce(&'static Job) -> R) -> ExitCode {
 /// Short blocks are handed over together: to wake a reader takes longer than a scenario.
 const SEND_EVERY: Duration = Duration::from_millis(20);
 
-fn answer<R: Runs>(
-    begin: impl FnOnce(&'static Job) -> R,
+fn answer(
+    begin: impl FnOnce(&'static Job) -> Scenarios,
     input: &mut impl BufRead,
     output: &mut impl Write,
 ) -> io::Result<()> {
     let Some(job) = read::<Job>(input)? else { return Ok(()) };
     // One job for the life of the program.
-    let job: &'static Job = Box::leak(Box::new(job));
-    let mut runs = begin(job);
+    let mut scenarios = begin(Box::leak(Box::new(job)));
     let mut output = BufWriter::with_capacity(1 << 16, output);
     while let Some(unit) = read::<Unit>(input)? {
-        let mut blocks = unit.blocks.iter().map(|block| {
-            let (first, count) = job.range(*block);
-            Block { first, count, ..Block::default() }
-        });
         let mut sent = Instant::now();
-        runs.run_unit(&mut blocks, &unit, &mut |block| {
+        scenarios.run(&unit, &mut |block| {
             output.write_all(&block.encode())?;
             if sent.elapsed() < SEND_EVERY {
                 return Ok(());
@@ -221,7 +246,7 @@ fn answer<R: Runs>(
 }
 
 /// What scenarios of a job have in common.
-struct Common {
+pub(crate) struct Common {
     job: &'static Job,
     source: Source<'static>,
     keeper: Keeper<'static>,

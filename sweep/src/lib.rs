@@ -12,6 +12,8 @@
 
 pub mod child;
 mod draw;
+#[cfg(feature = "in-process")]
+mod in_process;
 mod indices;
 mod keep;
 mod normal;
@@ -24,6 +26,8 @@ mod sobol;
 pub mod study;
 
 pub use draw::{Distribution, Draw};
+#[cfg(feature = "in-process")]
+pub use in_process::InProcess;
 pub use indices::{Indices, IndicesOf};
 pub use keep::{Keep, Keeper, Passage, Quantity, sample_times};
 pub use plan::{Axis, Plan, Sampling, Source, Target};

@@ -1,12 +1,12 @@
 //! The arguments of `sweep`.
 
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 /// Run the scenarios of a study on all cores
 ///
-/// Compiles the study's model once, runs every scenario and writes a table with a row for each, quantiles and plots. A
+/// Derives and proves the study's model once, runs every scenario and writes a table with a row for each, quantiles and plots. A
 /// scenario that fails is a row with its error. A sweep that was interrupted goes on with --resume and ends with the
 /// same files. See docs/sweep.md.
 #[derive(Debug, Args)]
@@ -41,17 +41,41 @@ pub struct SweepArgs {
     /// Run the first block, say what the whole sweep would cost, and stop
     #[arg(long, conflicts_with = "resume")]
     pub(crate) estimate: bool,
-    /// Number of programs that run scenarios [default: the number of cores]
+    /// Where scenarios are run, with the same results to the last bit [default: in-process; a sweep of
+    /// which more than half a minute is left goes on in programs that rustc compiles]
+    #[arg(long, value_enum)]
+    pub(crate) engine: Option<SweepEngine>,
+    /// Number of threads that run scenarios [default: the number of cores]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
     /// Run as a rank of an MPI job: of the nine of `mpirun -n 9 gyro sweep STUDY --mpi` one hands out blocks, and eight
     /// run them
     #[cfg(feature = "mpi")]
-    #[arg(long, conflicts_with_all = ["only", "estimate", "threads"])]
+    #[arg(long, conflicts_with_all = ["only", "estimate", "threads", "engine"])]
     pub(crate) mpi: bool,
-    /// Compile for this very processor: faster, with other roundings than on machines without its instructions
-    #[arg(long)]
+    /// Compile by rustc for this very processor: faster, with other roundings than on machines without its instructions
+    #[arg(long, conflicts_with = "engine")]
     pub(crate) native: bool,
+}
+
+impl SweepArgs {
+    /// Where scenarios are run, if that is asked for.
+    pub(crate) fn engine(&self) -> Option<SweepEngine> {
+        #[cfg(feature = "mpi")]
+        let is_spread = self.mpi;
+        #[cfg(not(feature = "mpi"))]
+        let is_spread = false;
+        if self.native || is_spread { Some(SweepEngine::Generated) } else { self.engine }
+    }
+}
+
+/// Where scenarios are run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SweepEngine {
+    /// In this process: compiled at once, or interpreted where this program has no compiler
+    InProcess,
+    /// In programs that rustc compiles, one for each thread: faster, after many seconds
+    Generated,
 }
 
 #[derive(Debug, Subcommand)]

@@ -56,8 +56,8 @@ pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
     let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
     let mut missed = Vec::new();
     for (index, path) in pages.iter().enumerate() {
-        let progress = Count::new(format!("{} of {}", index + 1, pages.len()));
-        let study = Study::new(path, &assembled, &effort, &progress)?;
+        let mut progress = Count::new(format!("{} of {}", index + 1, pages.len()));
+        let study = Study::new(path, &assembled, &effort, &mut progress)?;
         write::study(&study, &machine, &folder)?;
         index::add(&study, &machine, &folder)?;
         missed.extend(study.goals.into_iter().filter(|goal| !goal.is_met()));

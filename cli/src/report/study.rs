@@ -91,7 +91,7 @@ impl Study {
         path: &Path,
         assembled: &Path,
         effort: &Effort,
-        progress: &Count,
+        progress: &mut Count,
     ) -> Result<Self, Failure> {
         let began = Instant::now();
         let mut lab = Lab::new(path, assembled)?;
@@ -155,7 +155,7 @@ impl Study {
 }
 
 /// All runs of the diagrams. What a run may take is measured by the cheapest good one, as scenes differ in length.
-fn points(lab: &mut Lab, truth: &Truth, effort: explore::Effort, progress: &Count) -> Vec<Point> {
+fn points(lab: &mut Lab, truth: &Truth, effort: explore::Effort, progress: &mut Count) -> Vec<Point> {
     let curves = explore::curves(lab);
     progress.begin(&format!("{}: runs", lab.name), curves.len() as u64);
     let probe = Curve { integrator: Integrator::Dop853, ..curves[0] };
@@ -166,7 +166,7 @@ fn points(lab: &mut Lab, truth: &Truth, effort: explore::Effort, progress: &Coun
     let mut points = Vec::new();
     for curve in &curves {
         points.extend(explore::explore(lab, truth, curve, &effort));
-        progress.advance(&curve.name());
+        progress.advance(1, &curve.name());
     }
     even_out(&mut points);
     points
@@ -209,7 +209,7 @@ fn long_runs(
     lab: &mut Lab,
     effort: &Effort,
     truth_took: f64,
-    progress: &Count,
+    progress: &mut Count,
 ) -> Result<(f64, Vec<Drift>), Failure> {
     let treatments = explore::treatments(lab);
     progress.begin(&format!("{}: long runs", lab.name), treatments.len() as u64);
@@ -225,7 +225,7 @@ fn long_runs(
     let mut drifts = Vec::new();
     for treatment in treatments {
         drifts.push(drift(lab, treatment, long, truth.as_ref()));
-        progress.advance(&treatment.name());
+        progress.advance(1, &treatment.name());
     }
     lab.t_end = own;
     Ok((long, drifts))

@@ -1,15 +1,18 @@
-//! The program that runs a study's scenarios, and what it is asked for.
+//! What runs a study's scenarios: code in this process, or a program that rustc compiles.
 
+use super::loaded::Loaded;
+use super::starts;
 use crate::args::Precision;
 use crate::failure::Failure;
+use crate::proof::Proof;
 use crate::runs::{Runs, main_by};
-use crate::scene::Scene;
 use crate::write::digest;
-use crate::{nested, progress};
-use gyro_codegen::{Functions, Module};
+use crate::{in_process, nested, progress};
+use gyro_codegen::{Functions, Module, Scheduled};
 use gyro_model::Model;
-use gyro_sweep::study::Study;
+use gyro_sweep::InProcess;
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
 
 /// How scenarios are run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,27 +23,66 @@ pub(super) enum Way {
     Whole,
 }
 
-/// A compiled program.
-#[derive(Debug)]
-pub(super) struct Program {
-    pub(super) path: PathBuf,
-    /// Digest of its text: with another program the bits may be others.
-    pub(super) digest: String,
+impl Way {
+    pub(super) fn of(loaded: &Loaded) -> Self {
+        if starts::are_alike(&loaded.study, &loaded.scene) { Self::Packs } else { Self::Whole }
+    }
 }
 
-/// Generates, proves and compiles.
+/// What runs scenarios. Both give the same bits.
+#[derive(Debug)]
+pub(super) enum Program {
+    InProcess(Mutex<Box<InProcess>>),
+    Compiled(PathBuf),
+}
+
+/// What runs are made; nothing where a program for all runs makes them.
+fn runs(loaded: &Loaded) -> Option<Runs> {
+    // Motions with contacts are compared among themselves.
+    Runs::of(&loaded.scene).filter(|_| !loaded.study.keep.estimate || loaded.scene.offers.touches)
+}
+
+fn functions(loaded: &Loaded) -> Functions {
+    runs(loaded).map_or_else(Functions::of_solvers, Runs::functions)
+}
+
+/// Digest of what is computed: of other kernels the bits may be others.
+pub(super) fn digest_of(scheduled: &Scheduled, way: Way, is_native: bool) -> String {
+    digest(format!("{scheduled:?} {way:?} {is_native}").as_bytes())
+}
+
+/// The kernels as data.
+///
+/// # Errors
+/// A model of which no code can be generated.
+pub(super) fn scheduled(loaded: &Loaded) -> Result<Scheduled, Failure> {
+    let _spinner = progress::deriving(&loaded.scene.page);
+    gyro_codegen::schedule(&loaded.scene.page, &functions(loaded), loaded.scene.effort)
+        .map_err(|error| Failure::Usage(error.to_string()))
+}
+
+/// Compiles in this process, or prepares to interpret; a proof of it is on its way.
+///
+/// # Errors
+/// A model of which no code can be generated.
+pub(super) fn in_process(loaded: &Loaded, way: Way) -> Result<(InProcess, Proof), Failure> {
+    let Loaded { scene, .. } = loaded;
+    let (runs, functions) = (runs(loaded), functions(loaded));
+    let proof = Proof::begin(scene, &functions);
+    let mechanism = in_process::compiled::<f64>(scene, &functions, Some(&proof))?;
+    let of_whole = (way == Way::Whole).then(|| in_process::of_runs(scene, runs));
+    Ok((InProcess { model: Arc::new(scene.page.clone()), mechanism, runs: of_whole }, proof))
+}
+
+/// Generates, proves and compiles by rustc.
 ///
 /// # Errors
 /// A model of which no code can be generated, or code that does not compile.
-pub(super) fn program(study: &Study, scene: &Scene, way: Way, is_native: bool) -> Result<Program, Failure> {
-    // Motions with contacts are compared among themselves.
-    let runs = Runs::of(scene).filter(|_| !study.keep.estimate || scene.offers.touches);
-    let functions = match (way, runs) {
-        (_, Some(runs)) => runs.functions(),
-        (_, None) => Functions::of_solvers(),
-    };
+pub(super) fn compiled(loaded: &Loaded, way: Way, is_native: bool) -> Result<PathBuf, Failure> {
+    let Loaded { study, scene, .. } = loaded;
+    let runs = runs(loaded);
     let spinner = progress::deriving(&scene.page);
-    let module = gyro_codegen::generate_functions(&scene.page_name, &scene.page, &functions)
+    let module = gyro_codegen::generate_functions(&scene.page_name, &scene.page, &functions(loaded))
         .map_err(|e| Failure::Usage(e.to_string()))?;
     drop(spinner);
     let (beside, more) = match study.keep.by.is_empty() {
@@ -53,9 +95,7 @@ pub(super) fn program(study: &Study, scene: &Scene, way: Way, is_native: bool) -
         _ => main_by("::gyro_sweep::child::whole_sensitive", &module, Precision::F64, runs, more),
     } + &beside;
     let main = if is_native { format!("// With all instructions of this processor.\n{main}") } else { main };
-    let digest = digest(format!("{main}{}", module.code).as_bytes());
-    let path = nested::sweeping(&scene.page, &module, main, is_native)?;
-    Ok(Program { path, digest })
+    nested::sweeping(&scene.page, &module, main, is_native)
 }
 
 /// The mechanism in dual numbers, for sensitivities.

@@ -3,7 +3,7 @@
 //! The first rank compiles the program and broadcasts it; study and model are read by every rank.
 
 use super::loaded::Loaded;
-use super::program::Way;
+use super::program::{Program, Way};
 use super::workers::{Answer, Queue, Records, Workers, in_order, lock};
 use super::{Keep, Sweep, job};
 use crate::args::{Shard, SweepArgs};
@@ -45,15 +45,16 @@ pub(super) fn sweep(loaded: Loaded, args: &SweepArgs, folder: &Path) -> Result<(
 }
 
 fn lead(world: &SimpleCommunicator, loaded: Loaded, args: &SweepArgs, folder: &Path) -> Result<(), Failure> {
-    let sweep = Sweep::new(loaded, args)?;
+    let (sweep, _) = Sweep::new(loaded, args)?;
+    let Program::Compiled(program) = &sweep.program else { unreachable!("ranks run what rustc compiles") };
     if world.size() == 1 {
-        return sweep.fill(folder, args.resume, |places, keep| sweep.on_cores(places, keep));
+        return sweep.fill(None, (folder, args.resume), |places, keep| sweep.on_cores(places, keep));
     }
-    let read = |error| Failure::Run(format!("{}: {error}", sweep.program.path.display()));
-    broadcast(world, digest_of(&sweep.job).into_bytes());
-    broadcast(world, fs::read(&sweep.program.path).map_err(read)?);
+    let read = |error| Failure::Run(format!("{}: {error}", program.display()));
+    broadcast(world, digest_of(sweep.job).into_bytes());
+    broadcast(world, fs::read(program).map_err(read)?);
     let mut idle = VecDeque::new();
-    sweep.fill(folder, args.resume, |places, keep| hand_out(world, &mut idle, &places, keep))?;
+    sweep.fill(None, (folder, args.resume), |places, keep| hand_out(world, &mut idle, &places, keep))?;
     for _ in idle.len()..ranks(world) {
         let (_, status) = world.any_process().receive_vec_with_tag::<u8>(ASK);
         idle.push_back((status.source_rank(), 0));
@@ -106,18 +107,19 @@ fn serve(world: &SimpleCommunicator, idle: &mut Idle, mut give: impl FnMut(u64) 
 }
 
 fn follow(world: &SimpleCommunicator, loaded: &Loaded, args: &SweepArgs) -> Result<(), Failure> {
-    let job = job(loaded);
+    // One job for the life of this process.
+    let job: &'static Job = Box::leak(Box::new(job(loaded)));
     let expected = broadcast(world, Vec::new());
     let program = OnDisk::new(world.rank(), &broadcast(world, Vec::new()))?;
-    let (path, mut program) = (program.0.clone(), Some(program));
-    if digest_of(&job).as_bytes() != expected {
+    let (compiled, mut program) = (Program::Compiled(program.0.clone()), Some(program));
+    if digest_of(job).as_bytes() != expected {
         let (rank, path) = (world.rank(), &loaded.path);
         return Err(Failure::Run(format!("rank {rank} reads another {path}, or another model")));
     }
     let way = Way::of(loaded);
     let workers = Workers {
-        program: &path,
-        job: &job,
+        program: &compiled,
+        job,
         assembled: (way == Way::Whole).then_some(&loaded.scene.page),
         threads: NonZeroUsize::MIN,
     };

@@ -1,18 +1,20 @@
-//! Programs that run blocks, one for each core, and the order that their answers are brought into.
+//! Threads that run blocks, each by itself or by a program of its own, and the order that their answers are brought
+//! into.
 
+use super::program::Program;
+use super::starts;
 use crate::failure::Failure;
-use crate::sweep::starts;
 use gyro_model::Model;
 use gyro_runner::protocol::write;
 use gyro_sweep::Source;
-use gyro_sweep::child::{Job, StartSlopes, Unit};
+use gyro_sweep::child::{Job, Scenarios, StartSlopes, Unit};
 use gyro_sweep::record;
 use std::collections::BTreeMap;
-use std::io::BufReader;
+use std::io::{self, BufReader};
 use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::Path;
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{self, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::mpsc;
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::thread;
@@ -21,8 +23,8 @@ use std::time::Instant;
 /// Who runs a study.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Workers<'a> {
-    pub(super) program: &'a Path,
-    pub(super) job: &'a Job,
+    pub(super) program: &'a Program,
+    pub(super) job: &'static Job,
     /// The model that each scenario's start is assembled of; none where all start alike.
     pub(super) assembled: Option<&'a Model>,
     pub(super) threads: NonZeroUsize,
@@ -142,14 +144,8 @@ impl Workers<'_> {
         while let Some(places) = take(at_once) {
             let began = Instant::now();
             let blocks: Vec<u64> = places.clone().map(&block).collect();
-            worker.ask(&self.unit(blocks, &mut source))?;
-            let mut first = places.start;
-            while first < places.end {
-                let records = worker.hear(first, places.end)?;
-                first += records.count;
-                if !send(records) {
-                    return Ok(());
-                }
+            if !worker.run(&self.unit(blocks, &mut source), &places, &mut send)? {
+                return Ok(());
             }
             #[expect(clippy::cast_precision_loss, reason = "a number of blocks")]
             let each = began.elapsed().as_secs_f64() / (places.end - places.start) as f64;
@@ -220,27 +216,84 @@ pub(super) fn in_order(
     Ok(())
 }
 
+/// What runs the blocks of a thread.
+enum Worker {
+    Itself(Scenarios),
+    Program(Child),
+}
+
+impl Worker {
+    fn open(program: &Program, job: &'static Job) -> Result<Self, Failure> {
+        match program {
+            Program::InProcess(code) => {
+                let own = code.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                Ok(Self::Itself(own.scenarios(job)))
+            }
+            Program::Compiled(path) => Child::open(path, job).map(Self::Program),
+        }
+    }
+
+    /// Runs the blocks of a unit, which are those at some places, and sends their records; says whether anybody takes
+    /// them.
+    fn run(
+        &mut self,
+        unit: &Unit,
+        places: &Range<u64>,
+        send: &mut impl FnMut(Records) -> bool,
+    ) -> Result<bool, Failure> {
+        let mut first = places.start;
+        match self {
+            Self::Itself(scenarios) => {
+                let told = scenarios.run(unit, &mut |block| {
+                    let records = Records { first, count: 1, bytes: block.encode() };
+                    first += 1;
+                    if send(records) { Ok(()) } else { Err(io::ErrorKind::BrokenPipe.into()) }
+                });
+                Ok(told.is_ok())
+            }
+            Self::Program(program) => {
+                program.ask(unit)?;
+                while first < places.end {
+                    let records = program.hear(first, places.end)?;
+                    first += records.count;
+                    if !send(records) {
+                        return Ok(false);
+                    }
+                }
+                Ok(true)
+            }
+        }
+    }
+
+    fn close(self) -> Result<(), Failure> {
+        match self {
+            Self::Itself(_) => Ok(()),
+            Self::Program(program) => program.close(),
+        }
+    }
+}
+
 /// A program under way.
 #[derive(Debug)]
-struct Worker {
-    child: Child,
+struct Child {
+    process: process::Child,
     /// None once there is nothing more to ask.
     input: Option<ChildStdin>,
     output: BufReader<ChildStdout>,
 }
 
-impl Worker {
+impl Child {
     fn open(program: &Path, job: &Job) -> Result<Self, Failure> {
-        let failed = |error: std::io::Error| Failure::Run(format!("{}: {error}", program.display()));
+        let failed = |error: io::Error| Failure::Run(format!("{}: {error}", program.display()));
         let mut command = Command::new(program);
-        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(failed)?;
-        let mut input = child.stdin.take().expect("standard input is piped");
+        let mut process = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(failed)?;
+        let mut input = process.stdin.take().expect("standard input is piped");
         let output =
-            BufReader::with_capacity(1 << 16, child.stdout.take().expect("standard output is piped"));
+            BufReader::with_capacity(1 << 16, process.stdout.take().expect("standard output is piped"));
         let written = write(&mut input, job);
-        let worker = Self { child, input: Some(input), output };
+        let child = Self { process, input: Some(input), output };
         written.map_err(failed)?;
-        Ok(worker)
+        Ok(child)
     }
 
     fn ask(&mut self, unit: &Unit) -> Result<(), Failure> {
@@ -251,7 +304,7 @@ impl Worker {
     /// Lets the program end: it does when its input ends.
     fn close(mut self) -> Result<(), Failure> {
         drop(self.input.take());
-        self.child.wait().map(|_| ()).map_err(|error| self.ended(&error.to_string()))
+        self.process.wait().map(|_| ()).map_err(|error| self.ended(&error.to_string()))
     }
 
     /// The record of a place, and of those before `end` that have come with it: to wake who writes them takes as long
@@ -272,17 +325,17 @@ impl Worker {
     }
 
     fn ended(&mut self, words: &str) -> Failure {
-        let _ = self.child.kill();
-        let status = self.child.wait().map_or_else(|e| e.to_string(), |status| status.to_string());
+        let _ = self.process.kill();
+        let status = self.process.wait().map_or_else(|e| e.to_string(), |status| status.to_string());
         Failure::Run(format!(
             "the program that runs scenarios has ended: {words} ({status}); --resume goes on"
         ))
     }
 }
 
-impl Drop for Worker {
+impl Drop for Child {
     fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
+        let _ = self.process.kill();
+        let _ = self.process.wait();
     }
 }

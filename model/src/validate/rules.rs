@@ -29,6 +29,18 @@ impl ParameterRule<'_> {
             Self::Inertia(elements) => elements.iter().collect(),
         }
     }
+
+    /// The place of the first parameter that decides it.
+    pub fn first_parameter(&self) -> usize {
+        fn first(number: &Number) -> Option<usize> {
+            match number {
+                Number::Parameter { index, .. } => Some(*index),
+                Number::Computed(computation) => computation.operands().into_iter().find_map(first),
+                Number::Exact(_) | Number::Input { .. } => None,
+            }
+        }
+        self.numbers().into_iter().find_map(first).unwrap_or(0)
+    }
 }
 
 impl Model {

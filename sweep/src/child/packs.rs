@@ -5,7 +5,7 @@
 mod adaptive;
 
 use super::joint::Layout;
-use super::{Blocks, Common, Job, Outsets, Runs, Tell, Unit, note, serve};
+use super::{Blocks, Common, Job, Outsets, Runs, Scenarios, Tell, Unit, note, serve};
 use crate::Keeper;
 use crate::record::Block;
 use gyro_runner::{Approach, Integrator, Schedule, describe_in, scheduled};
@@ -20,18 +20,18 @@ const LANES: usize = f64x8::COUNT;
 /// Runs scenarios with the mechanism that `one` makes of parameters and `many` of packs of them; `check` says why
 /// it cannot have parameters.
 pub fn packs<M, P>(
-    one: impl Fn(&[f64]) -> M,
-    many: impl Fn(&[f64x8]) -> P,
-    check: impl Fn(&[f64]) -> Result<(), String>,
+    one: impl Fn(&[f64]) -> M + 'static,
+    many: impl Fn(&[f64x8]) -> P + 'static,
+    check: impl Fn(&[f64]) -> Result<(), String> + 'static,
 ) -> ExitCode
 where
-    M: JointSpace<Scalar = f64>,
-    P: JointSpace<Scalar = f64x8>,
+    M: JointSpace<Scalar = f64> + 'static,
+    P: JointSpace<Scalar = f64x8> + 'static,
 {
-    serve(|job| begin(job, one, many, check))
+    serve(|job| Scenarios::new(job, begin(job, one, many, check)))
 }
 
-pub(super) fn begin<M, P, F, G, C>(job: &'static Job, one: F, many: G, check: C) -> impl Runs
+pub(crate) fn begin<M, P, F, G, C>(job: &'static Job, one: F, many: G, check: C) -> impl Runs
 where
     M: JointSpace<Scalar = f64>,
     P: JointSpace<Scalar = f64x8>,
@@ -74,10 +74,10 @@ where
             *block = done;
             Ok(())
         };
-        self.run_unit(&mut std::iter::once(own), &Unit::default(), tell).expect("it is only put back");
+        self.run_blocks(&mut std::iter::once(own), &Unit::default(), tell).expect("it is only put back");
     }
 
-    fn run_unit(&mut self, blocks: Blocks<'_>, _: &Unit, tell: &mut Tell<'_>) -> io::Result<()> {
+    fn run_blocks(&mut self, blocks: Blocks<'_>, _: &Unit, tell: &mut Tell<'_>) -> io::Result<()> {
         let Approach { tolerance, integrator, .. } = self.common.job.approach;
         if tolerance.is_some() && integrator == Integrator::Tsit5 {
             return self.run_lanes::<_, Tsit5<M::Joints>>(blocks, tell, Tsit5::new);

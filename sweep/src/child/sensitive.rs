@@ -3,7 +3,7 @@
 use super::joint::{Layout, flat, joint_start, write_start};
 use super::variational::{Closing, Number, Part, Parts, Variational};
 use super::watch::Watch;
-use super::{Common, Job, Outsets, Runs, StartSlopes, note, packs, serve, whole};
+use super::{Common, Job, Outsets, Runs, Scenarios, StartSlopes, note, packs, serve, whole};
 use crate::Keep;
 use crate::plan::Target;
 use crate::record::Block;
@@ -19,42 +19,46 @@ use std::rc::Rc;
 
 /// As [`whole`](super::whole), with the derivatives of what is kept; `duals` makes the mechanism in dual numbers.
 pub fn whole_sensitive<M, D, K>(
-    build: impl Fn(&[f64]) -> (M, K) + Clone,
-    duals: impl Fn(&[Number]) -> D,
+    build: impl Fn(&[f64]) -> (M, K) + Clone + 'static,
+    duals: impl Fn(&[Number]) -> D + 'static,
 ) -> ExitCode
 where
     M: Partition<Scalar = f64> + JointSpace + Clone + 'static,
-    K: MotionBuilder<M>,
-    D: JointSpace<Scalar = Number>,
+    K: MotionBuilder<M> + 'static,
+    D: JointSpace<Scalar = Number> + 'static,
 {
     serve(|job| {
-        let inner = whole::begin(plain(job), build.clone());
-        Sensitive::new(job, inner, move |parameters: &[f64]| build(parameters).0, duals)
+        let inner = whole::begin(plain(job), whole::by(build.clone()));
+        let one = move |parameters: &[f64]| build(parameters).0;
+        Scenarios::new(job, Sensitive::new(job, inner, one, duals))
     })
 }
 
 /// As [`packs`](super::packs), likewise.
 pub fn packs_sensitive<M, P, D>(
-    one: impl Fn(&[f64]) -> M + Clone,
-    many: impl Fn(&[f64x8]) -> P,
-    check: impl Fn(&[f64]) -> Result<(), String>,
-    duals: impl Fn(&[Number]) -> D,
+    one: impl Fn(&[f64]) -> M + Clone + 'static,
+    many: impl Fn(&[f64x8]) -> P + 'static,
+    check: impl Fn(&[f64]) -> Result<(), String> + 'static,
+    duals: impl Fn(&[Number]) -> D + 'static,
 ) -> ExitCode
 where
-    M: JointSpace<Scalar = f64>,
-    P: JointSpace<Scalar = f64x8>,
-    D: JointSpace<Scalar = Number>,
+    M: JointSpace<Scalar = f64> + 'static,
+    P: JointSpace<Scalar = f64x8> + 'static,
+    D: JointSpace<Scalar = Number> + 'static,
 {
-    serve(|job| Sensitive::new(job, packs::begin(plain(job), one.clone(), many, check), one, duals))
+    serve(|job| {
+        let inner = packs::begin(plain(job), one.clone(), many, check);
+        Scenarios::new(job, Sensitive::new(job, inner, one, duals))
+    })
 }
 
 /// The same job without sensitivities.
-pub(super) fn plain(job: &Job) -> &'static Job {
+pub(crate) fn plain(job: &Job) -> &'static Job {
     let keep = Keep { by: Vec::new(), ..job.keep.clone() };
     Box::leak(Box::new(Job { keep, ..job.clone() }))
 }
 
-pub(super) struct Sensitive<R, F, G> {
+pub(crate) struct Sensitive<R, F, G> {
     inner: R,
     common: Common,
     times: Vec<f64>,
@@ -68,7 +72,7 @@ pub(super) struct Sensitive<R, F, G> {
 }
 
 impl<R, F, G> Sensitive<R, F, G> {
-    pub(super) fn new(job: &'static Job, inner: R, one: F, duals: G) -> Self {
+    pub(crate) fn new(job: &'static Job, inner: R, one: F, duals: G) -> Self {
         let scales = job.keep.by.iter().map(|target| job.plan.scale(*target)).collect();
         let (common, times) = (Common::new(job), job.times());
         let kept = Slopes::new(&job.keep, times.len());

@@ -2,7 +2,7 @@
 
 mod sensitive;
 
-use super::{Job, Unit, answer, packs, whole};
+use super::{Job, Scenarios, Unit, answer, packs, whole};
 use crate::record::{self, Block};
 use crate::{Axis, Distribution, Draw, Keep, Keeper, Passage, Plan, Quantity, Sampling, Source, Target};
 use gyro_mechanisms::gyroscope_misalignments::{GyroscopeMisalignments, Parameters};
@@ -48,16 +48,11 @@ fn blocks(job: &Job, units: &[Unit], is_packed: bool) -> Vec<Block> {
     units.iter().for_each(|unit| write(&mut input, unit).unwrap());
     let mut output = Vec::new();
     let check = |values: &[f64]| if values[0] > 0.0 { Ok(()) } else { Err("no".to_owned()) };
-    if is_packed {
-        answer(|job| packs::begin(job, built::<f64>, built::<f64x8>, check), &mut &input[..], &mut output)
-    } else {
-        answer(
-            |job| whole::begin(job, |values| (built::<f64>(values), BUILDER)),
-            &mut &input[..],
-            &mut output,
-        )
-    }
-    .unwrap();
+    let begin = |job| match is_packed {
+        true => Scenarios::new(job, packs::begin(job, built::<f64>, built::<f64x8>, check)),
+        false => Scenarios::new(job, whole::begin(job, whole::by(|values| (built::<f64>(values), BUILDER)))),
+    };
+    answer(begin, &mut &input[..], &mut output).unwrap();
     let (mut output, mut blocks) = (&output[..], Vec::new());
     let width = job.keep.width(job.times().len());
     while let Some(bytes) = record::next(&mut output).unwrap() {

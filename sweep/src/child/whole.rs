@@ -1,6 +1,6 @@
 //! Scenarios as whole runs, as `simulate` makes them.
 
-use super::{Common, Job, Outsets, Runs, note, serve};
+use super::{Common, Job, Outsets, Runs, Scenarios, note, serve};
 use crate::keep::Keeper;
 use crate::record::Block;
 use gyro_runner::motion::MotionBuilder;
@@ -8,34 +8,69 @@ use gyro_runner::{
     Approach, Event, Failure, Measure, Sample, Settings, Start, Summary, closely, companions, judge, run_by,
 };
 use gyro_sim::{Partition, Real};
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 /// Runs scenarios with the mechanism that `build` makes of parameters, and the builder beside it.
-pub fn whole<M: Partition<Scalar: Real> + Clone + 'static, K: MotionBuilder<M>>(
-    build: impl Fn(&[f64]) -> (M, K),
+pub fn whole<M: Partition<Scalar: Real> + Clone + 'static, K: MotionBuilder<M> + 'static>(
+    build: impl Fn(&[f64]) -> (M, K) + 'static,
 ) -> ExitCode {
-    serve(|job| begin(job, build))
+    serve(|job| Scenarios::new(job, begin(job, by(build))))
 }
 
-pub(super) fn begin<M: Partition<Scalar: Real> + Clone + 'static, K: MotionBuilder<M>>(
-    job: &'static Job,
-    build: impl Fn(&[f64]) -> (M, K),
-) -> impl Runs {
-    Whole { common: Common::new(job), build }
+/// What a run is told of: samples, and how far it is.
+type Tell<'a> = &'a mut dyn FnMut(Event<'_>) -> io::Result<()>;
+
+/// Makes a run of a scenario.
+pub(crate) trait Run {
+    /// From its parameters, schedule, method and start.
+    fn run(
+        &self,
+        parameters: &[f64],
+        plan: (&Settings, &Approach),
+        start: &Start,
+        tell: Tell<'_>,
+    ) -> Result<Summary, Failure>;
 }
 
-struct Whole<B> {
-    common: Common,
-    build: B,
+impl<F> Run for F
+where
+    F: Fn(&[f64], (&Settings, &Approach), &Start, Tell<'_>) -> Result<Summary, Failure>,
+{
+    fn run(
+        &self,
+        parameters: &[f64],
+        plan: (&Settings, &Approach),
+        start: &Start,
+        tell: Tell<'_>,
+    ) -> Result<Summary, Failure> {
+        self(parameters, plan, start, tell)
+    }
 }
 
-impl<M, K, B> Runs for Whole<B>
+/// Runs by the mechanism that `build` makes of parameters, and the builder beside it.
+pub(super) fn by<M, K>(build: impl Fn(&[f64]) -> (M, K)) -> impl Run
 where
     M: Partition<Scalar: Real> + Clone + 'static,
     K: MotionBuilder<M>,
-    B: Fn(&[f64]) -> (M, K),
 {
+    move |parameters: &[f64], plan: (&Settings, &Approach), start: &Start, tell: Tell<'_>| {
+        let (mut mechanism, builder) = build(parameters);
+        run_by(&mut mechanism, &builder, plan, start, tell)
+    }
+}
+
+pub(crate) fn begin(job: &'static Job, run: impl Run) -> impl Runs {
+    Whole { common: Common::new(job), run }
+}
+
+struct Whole<R> {
+    common: Common,
+    run: R,
+}
+
+impl<R: Run> Runs for Whole<R> {
     fn run(&mut self, block: &mut Block, from: Outsets<'_>) {
         let common = &mut self.common;
         for row in 0..block.count {
@@ -43,8 +78,8 @@ where
             common.keeper.moved = from.moved.get(row as usize).cloned().unwrap_or_default();
             let outcome = match from.starts.get(row as usize) {
                 Some(Err(words)) => Err(words.clone()),
-                Some(Ok(start)) => scenario(common, &self.build, start.clone()),
-                None => scenario(common, &self.build, common.job.start.clone()),
+                Some(Ok(start)) => scenario(common, &self.run, start.clone()),
+                None => scenario(common, &self.run, common.job.start.clone()),
             };
             common.keeper.finish(outcome.is_ok(), &mut block.numbers);
             if let Err(words) = outcome {
@@ -55,21 +90,14 @@ where
 }
 
 /// Runs one; a fault of the program's own is an error of this scenario alone.
-fn scenario<M, K>(common: &mut Common, build: impl Fn(&[f64]) -> (M, K), start: Start) -> Result<(), String>
-where
-    M: Partition<Scalar: Real> + Clone + 'static,
-    K: MotionBuilder<M>,
-{
+fn scenario(common: &mut Common, run: &dyn Run, start: Start) -> Result<(), String> {
     let Common { job, keeper, parameters, inputs: varied, .. } = common;
     let mut inputs = job.start.inputs.clone();
     inputs.extend_from_slice(varied);
     let start = Start { inputs, ..start };
-    let run = || {
-        let (mut mechanism, builder) = build(parameters);
-        match job.measure {
-            None => run_kept(&mut mechanism, &builder, (&job.settings, &job.approach), &start, keeper),
-            Some(measure) => run_judged(job, measure, (&mut mechanism, &builder), &start, keeper),
-        }
+    let run = || match job.measure {
+        None => run_kept(job, parameters, run, &start, keeper),
+        Some(measure) => run_judged(job, measure, (parameters, run), &start, keeper),
     };
     match catch_unwind(AssertUnwindSafe(run)) {
         Ok(outcome) => outcome.map_err(words),
@@ -84,40 +112,40 @@ fn words(failure: Failure) -> String {
     }
 }
 
-fn run_kept<M: Partition<Scalar: Real> + Clone + 'static>(
-    mechanism: &mut M,
-    builder: &dyn MotionBuilder<M>,
-    plan: (&Settings, &Approach),
+fn run_kept(
+    job: &Job,
+    parameters: &[f64],
+    run: &dyn Run,
     start: &Start,
     keeper: &mut Keeper<'_>,
 ) -> Result<(), Failure> {
-    let tell = |event: Event<'_>| {
+    let mut tell = |event: Event<'_>| {
         if let Event::Sample(sample) = event {
             keeper.sample(sample);
         }
         Ok(())
     };
-    run_by(mechanism, builder, plan, start, tell).map(|_| ())
+    run.run(parameters, (&job.settings, &job.approach), start, &mut tell).map(|_| ())
 }
 
 type Samples = (Vec<Sample>, Summary);
 
-fn run_judged<M: Partition<Scalar: Real> + Clone + 'static>(
+fn run_judged(
     job: &Job,
     (size, is_balanced): (f64, bool),
-    (mechanism, builder): (&mut M, &dyn MotionBuilder<M>),
+    (parameters, run): (&[f64], &dyn Run),
     start: &Start,
     keeper: &mut Keeper<'_>,
 ) -> Result<(), Failure> {
-    let mut run = |settings: &Settings, approach: &Approach| -> Result<Samples, Failure> {
+    let run = |settings: &Settings, approach: &Approach| -> Result<Samples, Failure> {
         let mut samples = Vec::new();
-        let tell = |event: Event<'_>| {
+        let mut tell = |event: Event<'_>| {
             if let Event::Sample(sample) = event {
                 samples.push(sample.clone());
             }
             Ok(())
         };
-        let summary = run_by(mechanism, builder, (settings, approach), start, tell)?;
+        let summary = run.run(parameters, (settings, approach), start, &mut tell)?;
         Ok((samples, summary))
     };
     let (samples, summary) = run(&job.settings, &job.approach)?;

@@ -207,18 +207,8 @@ fn rule_tokens(model: &Model, rule: &ParameterRule<'_>) -> TokenStream {
         }
         ParameterRule::Inertia(elements) => ("Inertia", list(*elements, 6)),
     };
-    let (kind, place) =
-        (ident(kind), index(rule.numbers().into_iter().find_map(first_parameter).unwrap_or(0)));
+    let (kind, place) = (ident(kind), index(rule.first_parameter()));
     quote! { (#place, gyro_sim::admissible::Rule::#kind(#arguments)) }
-}
-
-/// The place of the first parameter that a number depends on.
-fn first_parameter(number: &Number) -> Option<usize> {
-    match number {
-        Number::Parameter { index, .. } => Some(*index),
-        Number::Computed(computation) => computation.operands().into_iter().find_map(first_parameter),
-        Number::Exact(_) | Number::Input { .. } => None,
-    }
 }
 
 /// A number of such a rule. Operands that are sums, products or quotients are in parentheses.

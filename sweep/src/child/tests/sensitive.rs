@@ -13,24 +13,16 @@ fn sensitive(job: &Job, unit: &Unit, is_packed: bool) -> Block {
     let (mut output, one) = (Vec::new(), built::<f64>);
     let check = |values: &[f64]| if values[0] > 0.0 { Ok(()) } else { Err("no".to_owned()) };
     let mut input = &input[..];
-    if is_packed {
-        let begin = |job| {
-            Sensitive::new(
-                job,
-                packs::begin(plain(job), one, built::<f64x8>, check),
-                one,
-                |values: &[Number]| built(values),
-            )
-        };
-        answer(begin, &mut input, &mut output)
-    } else {
-        let begin = |job| {
-            let inner = whole::begin(plain(job), |values: &[f64]| (built::<f64>(values), BUILDER));
-            Sensitive::new(job, inner, one, |values: &[Number]| built(values))
-        };
-        answer(begin, &mut input, &mut output)
-    }
-    .unwrap();
+    let duals = |values: &[Number]| built(values);
+    let begin = |job| {
+        if is_packed {
+            let inner = packs::begin(plain(job), one, built::<f64x8>, check);
+            return Scenarios::new(job, Sensitive::new(job, inner, one, duals));
+        }
+        let inner = whole::begin(plain(job), whole::by(|values: &[f64]| (built::<f64>(values), BUILDER)));
+        Scenarios::new(job, Sensitive::new(job, inner, one, duals))
+    };
+    answer(begin, &mut input, &mut output).unwrap();
     let bytes = record::next(&mut &output[..]).unwrap().unwrap();
     Block::decode(&bytes, job.keep.width(job.times().len())).unwrap()
 }
