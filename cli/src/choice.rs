@@ -134,7 +134,7 @@ impl Choice<'_> {
         match (args.tolerance, args.step.or(args.correct_every), args.integrator()) {
             (Some(_), ..) => false,
             (None, Some(_), _) => true,
-            (None, None, Some(integrator)) => integrator == Integrator::Rk4,
+            (None, None, Some(integrator)) => !integrator.is_adaptive(),
             (None, None, None) => self.page.method == Some(Integrator::Rk4.name()),
         }
     }

@@ -3,7 +3,7 @@
 use crate::args::Precision;
 use crate::scene::Scene;
 use gyro_codegen::{Functions, Group, Module};
-use gyro_runner::{Approach, Coordinates, Correction, Integrator};
+use gyro_runner::{Approach, Coordinates, Correction};
 
 /// What a program can do: the less, the sooner it is compiled.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +24,7 @@ impl Runs {
     /// What a scene asks for; `None` for what only a program for all runs can do.
     pub(crate) fn of(scene: &Scene) -> Option<Self> {
         let Approach { integrator, coordinates, correction, examine, .. } = scene.approach;
-        let is_implicit = integrator == Integrator::Rodas4;
+        let is_implicit = integrator.is_implicit();
         let is_plain = matches!(correction, Correction::Partition | Correction::None);
         let runs = Self {
             is_implicit,

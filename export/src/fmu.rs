@@ -16,24 +16,13 @@ use std::io;
 pub(crate) use variables::states;
 use variables::{Variable, base_units, number, variables};
 
-/// A method of co-simulation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Order 5(4).
-    Tsit5,
-    /// Order 8(5, 3).
-    Dop853,
-    /// Order 4(3), implicit.
-    Rodas4,
-}
-
 /// What the model file does not say.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// By which an importer knows that binary and description belong together: a digest of the module, for instance.
     pub token: String,
-    /// What co-simulation integrates by.
-    pub method: Method,
+    /// What co-simulation integrates by: the name of a method with an error estimate.
+    pub method: &'static str,
     /// Its tolerance, where the importer gives none.
     pub tolerance: f64,
     /// Units of the inputs, in their order.
@@ -140,16 +129,11 @@ impl<'a> Unit<'a> {
     /// The C around the functions.
     fn wrapper(&self, names: &Names) -> String {
         let flag = u8::from;
-        let method = match self.settings.method {
-            Method::Tsit5 => "TSIT5",
-            Method::Dop853 => "DOP853",
-            Method::Rodas4 => "RODAS4",
-        };
         let mut text = format!("/* {} as a unit of FMI 3.0: around its functions. */\n\n", self.model.name);
         let _ = write!(text, "#include \"{}.h\"\n#include \"fmi3Functions.h\"\n\n", self.model.name);
         let lines = [
             ("TOKEN", format!("\"{}\"", self.settings.token)),
-            ("METHOD", names.upper(method)),
+            ("METHOD", names.upper(self.settings.method)),
             ("TOLERANCE", format!("{:?}", self.settings.tolerance)),
             ("HAS_OUTPUTS", flag(!self.settings.outputs.is_empty()).to_string()),
             ("HAS_INPUTS", flag(!self.model.inputs.is_empty()).to_string()),

@@ -8,9 +8,7 @@ use gyro_runner::motion::{
     Stabilised, Tree, TreeWithJacobian, WithDuals,
 };
 use gyro_runner::protocol::Request;
-use gyro_runner::{
-    Approach, Coordinates, Correction, Event, Failure, Integrator, Settings, Start, Summary, run_by,
-};
+use gyro_runner::{Approach, Coordinates, Correction, Event, Failure, Settings, Start, Summary, run_by};
 use gyro_sim::{Dual, Real};
 use std::io;
 
@@ -71,7 +69,7 @@ fn builder<T: Native + Real>(
             (false, _) => Box::new(WithDuals(duals())),
         };
     }
-    let is_implicit = approach.integrator == Integrator::Rodas4;
+    let is_implicit = approach.integrator.is_implicit();
     match (approach.coordinates, approach.correction, is_implicit) {
         (Coordinates::Joint, _, true) if has_jacobian => only(mechanism, runs, ImplicitInJoints),
         (Coordinates::Joint, _, true) => only(mechanism, runs, ImplicitInJointsByDuals(duals())),

@@ -208,7 +208,7 @@ impl Plan<'_> {
     fn unlimited(&self, met: &Statistics, fastest: Option<f64>) -> Option<Advice> {
         let is_of_motion = fastest.is_none_or(|rate| rate > TRUE_SHARE * met.fastest_rate);
         if is_of_motion {
-            let can = self.offers.derivatives && self.approach.integrator != Integrator::Rodas4;
+            let can = self.offers.derivatives && !self.approach.integrator.is_implicit();
             return can.then(|| Advice::to(Change::Integrator(Integrator::Rodas4)));
         }
         self.joint()

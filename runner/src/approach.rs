@@ -1,5 +1,6 @@
 //! Which integrator, in which coordinates, with which correction.
 
+pub use gyro_sim::integrate::Integrator;
 use nanoserde::{DeBin, SerBin};
 use std::fmt;
 use std::str::FromStr;
@@ -32,20 +33,6 @@ pub struct Approach {
     /// Whether steps of fixed length end at the knots of inputs and of motions, with each input as it is in the middle
     /// of a step: for companions, which see what other steps may step over.
     pub meets_knots: bool,
-}
-
-/// The method.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, SerBin, DeBin)]
-pub enum Integrator {
-    /// Kutta's classical method of order 4, fixed steps.
-    #[default]
-    Rk4,
-    /// Tsitouras's pair of orders 5 and 4.
-    Tsit5,
-    /// Dormand and Prince's method of order 8.
-    Dop853,
-    /// Rodas: L-stable, of order 4.
-    Rodas4,
 }
 
 /// What is integrated.
@@ -83,38 +70,32 @@ pub enum When {
     Violation(f64),
 }
 
-macro_rules! names {
-    ($type:ident: $($name:literal => $variant:ident),+) => {
-        impl $type {
-            /// All of them.
-            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+impl Coordinates {
+    /// Both.
+    pub const ALL: &'static [Self] = &[Self::Maximal, Self::Joint];
 
-            /// Its name on the command line and in reports.
-            pub const fn name(self) -> &'static str {
-                match self {
-                    $(Self::$variant => $name),+
-                }
-            }
+    /// Their name on the command line and in reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Maximal => "maximal",
+            Self::Joint => "joint",
         }
-
-        impl fmt::Display for $type {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(self.name())
-            }
-        }
-
-        impl FromStr for $type {
-            type Err = ();
-
-            fn from_str(name: &str) -> Result<Self, ()> {
-                Self::ALL.iter().copied().find(|one| one.name() == name).ok_or(())
-            }
-        }
-    };
+    }
 }
 
-names!(Integrator: "rk4" => Rk4, "tsit5" => Tsit5, "dop853" => Dop853, "rodas4" => Rodas4);
-names!(Coordinates: "maximal" => Maximal, "joint" => Joint);
+impl fmt::Display for Coordinates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Coordinates {
+    type Err = ();
+
+    fn from_str(name: &str) -> Result<Self, ()> {
+        Self::ALL.iter().copied().find(|one| one.name() == name).ok_or(())
+    }
+}
 
 impl fmt::Display for Correction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

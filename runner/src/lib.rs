@@ -44,7 +44,7 @@ pub use forecast::{Forecast, duration_words};
 pub use formula::Formula;
 pub use grade::{Grade, Judgement, Measure, Reason, balance, judge};
 pub use input::{Between, Input, any_varies};
-pub use offers::Offers;
+pub use offers::{Offers, listed};
 pub use path::Path;
 pub use remark::{Promise, Remark};
 pub use run::{Event, Start, run, run_by, scheduled};

@@ -68,17 +68,19 @@ impl Offers {
     fn refused_tolerance(&self, approach: &Approach) -> Option<String> {
         let tolerance = approach.tolerance?;
         let finest = self.finest_tolerance();
-        let words = if !(finest..=COARSEST).contains(&tolerance) {
+        if !(finest..=COARSEST).contains(&tolerance) {
             return Some(format!(
                 "a tolerance of {tolerance:e} cannot be met: it has to be between {finest:.1e}, the finest in this precision, and \
                  {COARSEST}"
             ));
-        } else if approach.integrator == Integrator::Rk4 {
-            "rk4 has no error estimate: give it a --step instead of a --tolerance, or use tsit5, dop853 or rodas4"
-        } else {
+        } else if approach.integrator.is_adaptive() {
             return None;
         };
-        Some(words.to_owned())
+        Some(format!(
+            "{} has no error estimate: give it a --step instead of a --tolerance, or use {}",
+            approach.integrator,
+            listed(Integrator::is_adaptive)
+        ))
     }
 
     /// Why a run cannot be made by its method, in its coordinates, with its correction.
@@ -91,8 +93,11 @@ impl Offers {
             (Coordinates::Maximal, _) if self.touches => {
                 "rigid stops and friction that sticks need joint coordinates: choose --coordinates joint"
             }
-            _ if self.touches && approach.integrator == Integrator::Rodas4 => {
-                "rigid stops and friction that sticks are for explicit methods: choose rk4, tsit5 or dop853"
+            _ if self.touches && approach.integrator.is_implicit() => {
+                return Some(format!(
+                    "rigid stops and friction that sticks are for explicit methods: choose {}",
+                    listed(|method| !method.is_implicit())
+                ));
             }
             (Coordinates::Joint, _) if !self.joint_space => {
                 "joint coordinates are for generated code of mechanisms that have them"
@@ -108,16 +113,34 @@ impl Offers {
                     approach.correction
                 ));
             }
-            (Coordinates::Maximal, Correction::Baumgarte(_)) if approach.integrator == Integrator::Rodas4 => {
-                "rodas4 has the derivatives of a mechanism, not those of Baumgarte's stabilisation: choose another correction, or \
-                 tsit5 or dop853"
+            (Coordinates::Maximal, Correction::Baumgarte(_)) if approach.integrator.is_implicit() => {
+                return Some(format!(
+                    "{} has the derivatives of a mechanism, not those of Baumgarte's stabilisation: choose another correction, \
+                     or {}",
+                    approach.integrator,
+                    listed(|method| method.is_adaptive() && !method.is_implicit())
+                ));
             }
-            _ if approach.integrator == Integrator::Rodas4 && !self.derivatives => {
-                "rodas4 needs derivatives, which only generated code has"
+            _ if approach.integrator.is_implicit() && !self.derivatives => {
+                return Some(format!(
+                    "{} needs derivatives, which only generated code has",
+                    approach.integrator
+                ));
             }
             _ => return None,
         };
         Some(words.to_owned())
+    }
+}
+
+/// The names of some methods, as a choice: `a, b or c`.
+pub fn listed(which: impl Fn(Integrator) -> bool) -> String {
+    let names: Vec<_> =
+        Integrator::ALL.iter().filter(|method| which(**method)).map(|method| method.name()).collect();
+    match names.split_last() {
+        Some((last, [])) => (*last).to_owned(),
+        Some((last, before)) => format!("{} or {last}", before.join(", ")),
+        None => String::new(),
     }
 }
 

@@ -132,7 +132,7 @@ impl Plan<'_> {
             let words = "What is left of the error is rounding.".to_owned();
             return Some(Remark { words, advice, promise: Promise::None });
         }
-        let order = if self.offers.inputs_vary { 1.0 } else { order(self.approach.integrator) };
+        let order = if self.offers.inputs_vary { 1.0 } else { f64::from(self.approach.integrator.order()) };
         let factor = (judged.relative / AIM).powf(1.0 / order).clamp(SHORTER[0], SHORTER[1]);
         // Shorter steps round more often, and small motions beside large ones are rounded with these.
         let largest = judged.errors.iter().map(|error| error.in_tolerances(1.0)).fold(0.0, f64::max);
@@ -168,7 +168,7 @@ impl Plan<'_> {
             Some(rate) => rate * mean > AT_LIMIT,
             None => 50 * met.rejected > met.accepted,
         };
-        if share <= STIFF_SHARE || !is_true || self.approach.integrator == Integrator::Rodas4 {
+        if share <= STIFF_SHARE || !is_true || self.approach.integrator.is_implicit() {
             return None;
         }
         let words = format!(
@@ -262,13 +262,5 @@ pub(crate) fn in_words(reason: &Reason) -> String {
 impl std::fmt::Display for Reason {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&in_words(self))
-    }
-}
-
-fn order(integrator: Integrator) -> f64 {
-    match integrator {
-        Integrator::Rk4 | Integrator::Rodas4 => 4.0,
-        Integrator::Tsit5 => 5.0,
-        Integrator::Dop853 => 8.0,
     }
 }

@@ -1,7 +1,8 @@
 //! The arguments of `export`.
 
 use super::Precision;
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
+use gyro_runner::{Integrator, listed};
 use std::path::PathBuf;
 
 /// Write a mechanism with its solver for other languages and tools
@@ -98,9 +99,9 @@ pub struct FmuArgs {
     /// Where to write the archive
     #[arg(long, value_name = "FILE.fmu")]
     pub(crate) out: PathBuf,
-    /// What co-simulation integrates by
-    #[arg(long, value_enum, default_value = "dop853")]
-    pub(crate) integrator: CosimulationMethod,
+    /// What co-simulation integrates by: tsit5, dop853, or rodas4 for stiff mechanisms
+    #[arg(long, default_value = "dop853", value_parser = adaptive)]
+    pub(crate) integrator: Integrator,
     /// Its tolerance, relative and absolute, where the importing tool gives none
     #[arg(long, default_value = "1e-9", value_parser = super::simulate::tolerance)]
     pub(crate) tolerance: f64,
@@ -112,13 +113,8 @@ pub struct FmuArgs {
     pub(crate) strict: bool,
 }
 
-/// What co-simulation integrates by.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum CosimulationMethod {
-    /// Order 5(4), for moderate tolerances
-    Tsit5,
-    /// Order 8(5, 3), for fine tolerances
-    Dop853,
-    /// Order 4(3), for stiff mechanisms
-    Rodas4,
+/// What co-simulation integrates by: a method with an error estimate.
+fn adaptive(text: &str) -> Result<Integrator, String> {
+    let method = text.parse().ok().filter(|method: &Integrator| method.is_adaptive());
+    method.ok_or_else(|| format!("{} was expected", listed(Integrator::is_adaptive)))
 }

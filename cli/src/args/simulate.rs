@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use gyro_model::{Direction, Rational, parse_decimal};
-use gyro_runner::{Between, Coordinates, Correction, Integrator, When};
+use gyro_runner::{Between, Coordinates, Correction, Integrator, When, listed};
 use std::path::PathBuf;
 
 /// Simulate a model
@@ -284,12 +284,16 @@ fn method(text: &str) -> Result<MethodName, String> {
         _ => text
             .parse()
             .map(MethodName::By)
-            .map_err(|()| "rk4, tsit5, dop853, rodas4, partitioned or direct was expected".to_owned()),
+            .map_err(|()| format!("{}, partitioned or direct was expected", names().join(", "))),
     }
 }
 
 fn integrator(text: &str) -> Result<Integrator, String> {
-    text.parse().map_err(|()| "rk4, tsit5, dop853 or rodas4 was expected".to_owned())
+    text.parse().map_err(|()| format!("{} was expected", listed(|_| true)))
+}
+
+fn names() -> Vec<&'static str> {
+    Integrator::ALL.iter().map(|method| method.name()).collect()
 }
 
 fn coordinates(text: &str) -> Result<Coordinates, String> {

@@ -1,7 +1,7 @@
 //! A functional mock-up unit: sources, library and description in one archive.
 
 use super::{Scratch, run, say};
-use crate::args::{CosimulationMethod, FmuArgs};
+use crate::args::FmuArgs;
 use crate::columns;
 use crate::contacts;
 use crate::controllers;
@@ -14,7 +14,7 @@ use crate::scene;
 use crate::write::{self, Known};
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
-use gyro_export::fmu::{Fmu, Method, OPTIONS, Settings, fmu as written};
+use gyro_export::fmu::{Fmu, OPTIONS, Settings, fmu as written};
 use rawzip::time::UtcDateTime;
 use rawzip::{CompressionMethod, ZipArchiveWriter};
 use std::ffi::{OsStr, OsString};
@@ -37,17 +37,13 @@ pub(super) fn fmu(args: &FmuArgs) -> Result<(), Failure> {
     let asked = |_: &Path| Asked::Here(functions.clone());
     let made = modules(std::slice::from_ref(&args.model), &asked, args.strict).pop();
     let module = made.expect("one model file gives one module")?;
-    let method = match args.integrator {
-        CosimulationMethod::Tsit5 => Method::Tsit5,
-        CosimulationMethod::Dop853 => Method::Dop853,
-        CosimulationMethod::Rodas4 => Method::Rodas4,
-    };
+    let method = args.integrator.name();
     let inputs = (0..model.inputs.len()).map(|input| columns::input_unit(&model, input).to_owned());
     let outputs = columns::outputs(&model).into_iter().map(|(name, unit)| (name, unit.to_owned()));
     let settings = Settings {
         token: format!(
             "{{{}}}",
-            write::digest(format!("{}{method:?}{:?}", module.code, args.tolerance).as_bytes())
+            write::digest(format!("{}{method}{:?}", module.code, args.tolerance).as_bytes())
         ),
         method,
         tolerance: args.tolerance,

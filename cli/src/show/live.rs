@@ -48,11 +48,10 @@ pub(super) fn live(scene: &Scene) -> Result<Live, Failure> {
     Ok(Live {
         about: serde_json::from_str(&exported.about).map_err(|e| broken(e.to_string()))?,
         module: compiled(&module.name, &exported)?,
-        method: match scene.approach.integrator {
-            Integrator::Tsit5 => "tsit5",
-            Integrator::Rodas4 => "rodas4",
-            _ => "dop853",
-        },
+        method: Some(scene.approach.integrator)
+            .filter(|method| method.is_adaptive())
+            .unwrap_or(Integrator::Dop853)
+            .name(),
         tolerance: scene.approach.tolerance.unwrap_or(TOLERANCE),
         parameters: settings(&scene.model.parameters, |_| ""),
         inputs: inputs(scene),

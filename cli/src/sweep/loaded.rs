@@ -7,7 +7,7 @@ use crate::scene::{self, Scene};
 use crate::verdict::Outcome;
 use crate::{args, events, files, inputs, remarks, simulate};
 use gyro_model::Model;
-use gyro_runner::{Approach, Coordinates, Input, Integrator};
+use gyro_runner::{Approach, Coordinates, Input};
 use gyro_sweep::study::{self, Files, Study, Unreadable, Vocabulary};
 use std::path::{Path, PathBuf};
 
@@ -84,7 +84,7 @@ fn settle(study: &Study, scene: &mut Scene) -> Result<(), Failure> {
     if !study.keep.by.is_empty() {
         let asks = "sensitivities are computed in joint coordinates, by explicit methods";
         let Approach { coordinates, integrator, .. } = scene.approach;
-        if coordinates != Coordinates::Joint || integrator == Integrator::Rodas4 {
+        if coordinates != Coordinates::Joint || integrator.is_implicit() {
             let help = "run = { coordinates = \"joint\", integrator = \"dop853\" } in the study";
             return Err(Failure::Usage(format!(
                 "{asks}: the run would be by {integrator} in {coordinates} ones; write {help}"

@@ -6,7 +6,7 @@
 
 use crate::scene::{Scene, start};
 use gyro_model::{Attachment, JointCoordinate, Link, Model, Number, Rational, Tree};
-use gyro_runner::{Coordinates, Integrator, Start};
+use gyro_runner::{Coordinates, Start};
 use gyro_sweep::study::Study;
 use gyro_sweep::{Draw, Plan, Quantity, Target};
 
@@ -105,11 +105,8 @@ pub(super) fn slopes(page: &Model, plan: &Plan, by: &[usize], values: &[f64]) ->
 /// lanes of packs.
 pub(super) fn are_alike(study: &Study, scene: &Scene) -> bool {
     let (model, approach) = (&scene.page, &scene.approach);
-    let is_explicit = match approach.integrator {
-        Integrator::Rk4 => approach.tolerance.is_none(),
-        Integrator::Tsit5 | Integrator::Dop853 => approach.tolerance.is_some(),
-        Integrator::Rodas4 => false,
-    };
+    let (method, has_tolerance) = (approach.integrator, approach.tolerance.is_some());
+    let is_explicit = !method.is_implicit() && method.is_adaptive() == has_tolerance;
     let is_joint = |quantity: &Quantity| matches!(quantity, Quantity::Position(_) | Quantity::Rate(_));
     let is_tree = Tree::of(model).is_open() && model.couplers.is_empty() && model.drivers.is_empty();
     let is_constant = study.plan.targets.iter().all(|target| !matches!(target, Target::Table(_)));

@@ -10,6 +10,7 @@
 //! A method holds its own work space, whose size is part of the type of the state: nothing is allocated. Methods do not
 //! depend on mechanisms or corrections; [`Solver`](crate::Solver) combines them.
 
+mod choice;
 mod dop853;
 mod kutta4;
 mod lu;
@@ -24,6 +25,17 @@ pub use kutta4::Kutta4;
 pub use rk4::Rk4;
 pub use rodas4::Rodas4;
 pub use tsit5::Tsit5;
+
+choice::methods! { $
+    /// Kutta's classical method of order 4, fixed steps.
+    fixed "rk4" Rk4 = Kutta4, 4;
+    /// Tsitouras's pair of orders 5 and 4.
+    adaptive "tsit5" Tsit5 = Tsit5, 5;
+    /// Dormand and Prince's method of order 8.
+    adaptive "dop853" Dop853 = Dop853, 8;
+    /// Rodas: L-stable, of order 4.
+    implicit "rodas4" Rodas4 = Rodas4, 4;
+}
 
 use crate::contract::Storage;
 use crate::{Lanes, Ode, Real, Scalar, System};

@@ -6,7 +6,7 @@ use super::independent::Closing;
 use super::lens::{Slopes, joint_duals, joints};
 use super::linearise::{by_duals, by_jacobian};
 use super::moving::{adaptive, explicit};
-use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator, When};
+use crate::approach::{Approach, Coordinates, Correction as Keeping, When};
 use crate::failure::describe_in;
 use crate::offers::Offers;
 use crate::pivots;
@@ -81,7 +81,7 @@ where
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         only_maximal(approach)?;
         let correction = keeping(mechanism, approach, y)?;
-        if approach.integrator == Integrator::Rodas4 {
+        if approach.integrator.is_implicit() {
             return Ok(implicit(approach, self.0.clone(), correction, y));
         }
         Ok(maximal(approach, correction, y))
@@ -106,7 +106,7 @@ where
             return in_maximal(mechanism, approach, &self.0, y);
         }
         let (x, closing, approach) = in_joints(mechanism, approach, y)?;
-        if approach.integrator == Integrator::Rodas4 {
+        if approach.integrator.is_implicit() {
             let method = Rodas4::new(&x, vec![M::Scalar::constant(0.0); square(x.as_ref())]);
             return Ok(adaptive(joint_duals(&self.0), method, closing, &approach, &x));
         }
@@ -140,7 +140,7 @@ where
             return in_maximal(mechanism, approach, &self.0, y);
         }
         let (x, closing, approach) = in_joints(mechanism, approach, y)?;
-        if approach.integrator == Integrator::Rodas4 {
+        if approach.integrator.is_implicit() {
             let method = Rodas4::new(&x, mechanism.jacobian_buffers().jacobian);
             return Ok(adaptive(Joint, method, closing, &approach, &x));
         }
@@ -191,7 +191,7 @@ fn only_maximal(approach: &Approach) -> Result<(), String> {
 }
 
 fn only_explicit(approach: &Approach) -> Result<(), String> {
-    if approach.integrator == Integrator::Rodas4 {
+    if approach.integrator.is_implicit() {
         return Err("rodas4 needs derivatives, which only generated code has".to_owned());
     }
     Ok(())
@@ -216,7 +216,7 @@ where
         Keeping::ClosedForm => Boxed(Box::new(ClosedForm::new(mechanism))),
         _ => keeping(mechanism, approach, y)?,
     };
-    if approach.integrator == Integrator::Rodas4 {
+    if approach.integrator.is_implicit() {
         return Ok(implicit(approach, duals.clone(), correction, y));
     }
     Ok(maximal(approach, correction, y))

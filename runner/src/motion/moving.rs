@@ -5,11 +5,10 @@ use super::course::Course;
 use super::feed::{Around, Fed};
 use super::kink::struck;
 use super::lens::Lens;
-use crate::approach::{Approach, Correction as Keeping, Integrator};
+use crate::approach::{Approach, Correction as Keeping};
 use gyro_sim::integrate::Method;
 use gyro_sim::{
-    Control, Correction, Dop853, Error, Kutta4, Mechanism, Real, Scalar, Solver, Statistics, Tsit5, When,
-    contact,
+    Control, Correction, Dop853, Error, Mechanism, Real, Scalar, Solver, Statistics, When, by_method, contact,
 };
 use std::fmt::Debug;
 
@@ -24,11 +23,12 @@ where
     L: Lens<M>,
     C: Correction<L, M> + 'static,
 {
-    match approach.integrator {
-        Integrator::Rk4 => Box::new(Fixed(solver(lens, Kutta4::new(y), correction, approach, y), None)),
-        Integrator::Tsit5 => adaptive(lens, Tsit5::new(y), correction, approach, y),
-        _ => adaptive(lens, Dop853::new(y), correction, approach, y),
-    }
+    by_method!(
+        approach.integrator,
+        fixed A => Box::new(Fixed(solver(lens, A::new(y), correction, approach, y), None)),
+        adaptive A => adaptive(lens, A::new(y), correction, approach, y),
+        implicit => adaptive(lens, Dop853::new(y), correction, approach, y),
+    )
 }
 
 pub(super) fn adaptive<M, L, A, C>(

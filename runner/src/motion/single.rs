@@ -7,7 +7,7 @@ use super::correction::{Boxed, partitioning, watched, weighted};
 use super::lens::{Slopes, joint_duals};
 use super::moving::{adaptive, explicit};
 use super::touching::touching;
-use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
+use crate::approach::{Approach, Coordinates, Correction as Keeping};
 use crate::offers::Offers;
 use crate::touch::Touch;
 use gyro_sim::{
@@ -57,7 +57,7 @@ pub trait Kind<M: Partition<Scalar: Real>> {
 
 impl<K: Kind<M>, M: Partition<Scalar: Real>> MotionBuilder<M> for Only<K> {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
-        let is_implicit = approach.integrator == Integrator::Rodas4;
+        let is_implicit = approach.integrator.is_implicit();
         if is_implicit != K::IS_IMPLICIT || !self.kind.makes(approach.coordinates, approach.correction) {
             return Err(format!("this program was compiled for other runs than {approach}"));
         }

@@ -6,14 +6,12 @@ use super::feed::{Around, Fed};
 use super::kink::struck;
 use super::lens::Lens;
 use super::moving::control;
-use crate::approach::{Approach, Integrator};
+use crate::approach::Approach;
 use crate::touch::Touch;
 use crate::watch::What;
 use gyro_sim::contact::{self, Contact, Contacts, Hybrid, Phase};
 use gyro_sim::integrate::Method;
-use gyro_sim::{
-    Correction, Dop853, Error, Joint, JointPlace, JointSpace, Kutta4, Real, Scalar, Statistics, Tsit5,
-};
+use gyro_sim::{Correction, Error, Joint, JointPlace, JointSpace, Real, Scalar, Statistics, by_method};
 
 /// The contacts of a run; those that it does not have do nothing.
 const MOST: usize = Touch::MOST;
@@ -33,20 +31,17 @@ where
     M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
     C: Correction<Joint, M> + 'static,
 {
-    Ok(match approach.integrator {
-        Integrator::Rk4 => {
-            let begun = begin(mechanism, Kutta4::new(x), correction, (approach, x), touches)?;
-            Box::new(Contacting {
-                hybrid: begun,
-                // It has no error estimate: one step.
-                towards: |hybrid, mechanism, t_end| hybrid.move_by(mechanism, t_end - hybrid.time()),
-                course: None,
-            })
-        }
-        Integrator::Tsit5 => adaptive(begin(mechanism, Tsit5::new(x), correction, (approach, x), touches)?),
-        Integrator::Dop853 => adaptive(begin(mechanism, Dop853::new(x), correction, (approach, x), touches)?),
-        Integrator::Rodas4 => return Err(super::contract::NOT_TOUCHING.to_owned()),
-    })
+    Ok(by_method!(
+        approach.integrator,
+        fixed A => Box::new(Contacting {
+            hybrid: begin(mechanism, A::new(x), correction, (approach, x), touches)?,
+            // It has no error estimate: one step.
+            towards: |hybrid, mechanism, t_end| hybrid.move_by(mechanism, t_end - hybrid.time()),
+            course: None,
+        }),
+        adaptive A => adaptive(begin(mechanism, A::new(x), correction, (approach, x), touches)?),
+        implicit => return Err(super::contract::NOT_TOUCHING.to_owned()),
+    ))
 }
 
 fn begin<M, A, C>(

@@ -8,9 +8,9 @@ use super::joint::Layout;
 use super::{Blocks, Common, Job, Outsets, Runs, Scenarios, Tell, Unit, note, serve};
 use crate::Keeper;
 use crate::record::Block;
-use gyro_runner::{Approach, Integrator, Schedule, describe_in, scheduled};
+use gyro_runner::{Approach, Schedule, describe_in, scheduled};
 use gyro_sim::lanes::{Direct, Lanes, f64x8};
-use gyro_sim::{Dop853, Error, Joint, JointSpace, Scalar, Tsit5};
+use gyro_sim::{Error, Joint, JointSpace, Scalar, by_method};
 use std::io;
 use std::process::ExitCode;
 
@@ -79,11 +79,13 @@ where
 
     fn run_blocks(&mut self, blocks: Blocks<'_>, _: &Unit, tell: &mut Tell<'_>) -> io::Result<()> {
         let Approach { tolerance, integrator, .. } = self.common.job.approach;
-        if tolerance.is_some() && integrator == Integrator::Tsit5 {
-            return self.run_lanes::<_, Tsit5<M::Joints>>(blocks, tell, Tsit5::new);
-        }
         if tolerance.is_some() {
-            return self.run_lanes::<_, Dop853<M::Joints, f64>>(blocks, tell, Dop853::new);
+            return by_method!(
+                integrator,
+                fixed A => unreachable!("{integrator} has no error estimate"),
+                adaptive A => self.run_lanes(blocks, tell, A::new, A::new),
+                implicit => unreachable!("{integrator} is not explicit"),
+            );
         }
         for mut block in blocks {
             let lanes = LANES as u32;

@@ -9,10 +9,10 @@ use crate::plan::Target;
 use crate::record::Block;
 use crate::slopes::Slopes;
 use gyro_runner::motion::{COLUMNS, MotionBuilder};
-use gyro_runner::{Input, Integrator, Schedule, Start, describe_in, scheduled};
+use gyro_runner::{Input, Schedule, Start, describe_in, scheduled};
 use gyro_sim::integrate::Method;
 use gyro_sim::lanes::f64x8;
-use gyro_sim::{Control, Dop853, Dual, Error, JointSpace, Kutta4, Partition, Solver, Tsit5, When};
+use gyro_sim::{Control, Dual, Error, JointSpace, Partition, Solver, When, by_method};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 use std::rc::Rc;
@@ -146,20 +146,22 @@ where
         self.take(0.0, &state, &mut watch);
         let n = state.len() / (1 + self.scales.len());
         let equations = Variational(parts);
-        let outcome = match (job.approach.tolerance, job.approach.integrator) {
-            (None, _) => {
-                let solver = Solver::with_correction(equations, Kutta4::new(&state), closing, 0.0, &state);
-                self.fixed(solver.with_control(control(&mechanism, job)), &mechanism, &mut watch)
-            }
-            (_, Integrator::Tsit5) => {
-                let solver = Solver::with_correction(equations, Tsit5::new(&state), closing, 0.0, &state);
-                self.adaptive(solver.with_control(control(&mechanism, job)), &mechanism, &mut watch)
-            }
-            _ => {
-                let solver = Solver::with_correction(equations, Dop853::new(&state), closing, 0.0, &state);
-                self.adaptive(solver.with_control(control(&mechanism, job)), &mechanism, &mut watch)
-            }
-        };
+        let (integrator, control) = (job.approach.integrator, control(&mechanism, job));
+        let outcome = by_method!(
+            integrator,
+            fixed A => {
+                let solver = Solver::with_correction(equations, A::new(&state), closing, 0.0, &state);
+                self.fixed(solver.with_control(control), &mechanism, &mut watch)
+            },
+            adaptive A => {
+                let solver = Solver::with_correction(equations, A::new(&state), closing, 0.0, &state);
+                match job.approach.tolerance {
+                    None => self.fixed(solver.with_control(control), &mechanism, &mut watch),
+                    Some(_) => self.adaptive(solver.with_control(control), &mechanism, &mut watch),
+                }
+            },
+            implicit => unreachable!("{integrator} is not explicit"),
+        );
         outcome.map_err(|error| words(&mechanism, n, &error))
     }
 

@@ -133,7 +133,7 @@ impl Kept {
         } else if run.coordinates == Some(Coordinates::Maximal) {
             let help = "write run = { coordinates = \"joint\" }";
             Some(["sensitivities are computed in joint coordinates", "in maximal ones", help])
-        } else if run.integrator == Some(Integrator::Rodas4) {
+        } else if run.integrator.is_some_and(Integrator::is_implicit) {
             let help = "write integrator = \"dop853\", \"tsit5\" or \"rk4\"";
             Some(["sensitivities are computed by explicit methods", "by rodas4", help])
         } else {

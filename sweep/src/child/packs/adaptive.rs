@@ -86,12 +86,13 @@ where
     G: Fn(&[f64x8]) -> P,
     C: Fn(&[f64]) -> Result<(), String>,
 {
-    /// Runs blocks with the method that `method` makes for packs; `B` is the same for one scenario.
+    /// Runs blocks with the method that `method` makes for packs; the other is the same for one scenario.
     pub(super) fn run_lanes<A, B>(
         &mut self,
         blocks: Blocks<'_>,
         tell: &mut Tell<'_>,
         method: impl Fn(&P::Joints) -> A,
+        _: impl Fn(&M::Joints) -> B,
     ) -> io::Result<()>
     where
         A: Embedded<Joint, P>,

@@ -2,7 +2,7 @@
 //! What importers that others wrote make of them: `.ci/fmu`.
 
 use crate::program::{compiled, model_and_module, own};
-use gyro_export::fmu::{Fmu, Method, Settings, fmu};
+use gyro_export::fmu::{Fmu, Settings, fmu};
 use roxmltree::{Document, Node};
 use std::fs;
 use std::path::Path;
@@ -20,7 +20,7 @@ fn unit(page: &str) -> Fmu {
     let n_outputs: usize = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
     let settings = Settings {
         token: TOKEN.to_owned(),
-        method: Method::Dop853,
+        method: "dop853",
         tolerance: 1e-9,
         input_units: vec!["N*m".to_owned(); model.inputs.len()],
         outputs: (0..n_outputs).map(|n| (format!("output {n}"), "m/s^2".to_owned())).collect(),
