@@ -16,6 +16,7 @@ mod directions;
 mod elements;
 mod event;
 mod formula;
+pub mod keys;
 mod kinematics;
 mod lines;
 mod motion;
@@ -36,8 +37,8 @@ pub use contact::Contact;
 pub use controller::{Controller, Law, Seen};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
-    BodyFrame, CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame,
-    Output, OutputKind, StopSide,
+    BodyFrame, CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, ForceParts, JointCoordinate,
+    LoadFrame, Output, OutputKind, StopSide,
 };
 pub use event::{Direction, Event};
 pub use formula::Formula;

@@ -2,9 +2,8 @@
 
 use crate::redundancy::analyse_with_start;
 use crate::{
-    BodyMotion, CoordinateKind, CoordinateUse, Force, ForceKind, JointCoordinate, JointKind, Lines, Model,
-    Motion, Number, Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start, Support,
-    Tree, to_f64,
+    BodyMotion, CoordinateKind, CoordinateUse, JointCoordinate, JointKind, Lines, Model, Motion, Number,
+    Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start, Support, Tree, to_f64,
 };
 use std::ops::Range;
 
@@ -16,6 +15,20 @@ impl Support {
 }
 
 impl JointKind {
+    /// All kinds.
+    pub const ALL: [Self; 10] = [
+        Self::Revolute,
+        Self::Spherical,
+        Self::Fixed,
+        Self::Universal,
+        Self::Cylindrical,
+        Self::Prismatic,
+        Self::Planar,
+        Self::Screw,
+        Self::PointOnLine,
+        Self::Rod,
+    ];
+
     /// Units of the joint's rows, in their order: see [`Model::rows`].
     pub fn row_units(self) -> &'static [RowUnit] {
         use RowUnit::{Length, Pure};
@@ -47,6 +60,11 @@ impl JointKind {
             Self::PointOnLine => "point_on_line",
             Self::Rod => "rod",
         }
+    }
+
+    /// The kind of a name in the model file.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
     /// Whether the joint's one coordinate is its one freedom: then it can have an armature.
@@ -239,13 +257,7 @@ impl Model {
 
     /// What forces, couplers and drivers ask of a joint's coordinates.
     pub fn use_of_coordinates(&self, joint: usize) -> CoordinateUse {
-        let forces = self.forces.iter().filter_map(|force| match force.kind {
-            ForceKind::Spring { on, .. } | ForceKind::Stop { on, .. } => Some((on, CoordinateUse::Value)),
-            ForceKind::Damper { on, .. } | ForceKind::Coulomb { on, .. } | ForceKind::Motor { on, .. } => {
-                Some((on, CoordinateUse::Rate))
-            }
-            ForceKind::Link { .. } | ForceKind::Load { .. } => None,
-        });
+        let forces = self.forces.iter().filter_map(|force| force.kind.parts().on);
         let couplers = self.couplers.iter().flat_map(|coupler| [coupler.first, coupler.second]);
         let prescribed = couplers.chain(self.drivers.iter().map(|driver| driver.coordinate));
         let stopped = self.contacts.iter().map(|contact| (contact.on, CoordinateUse::Value));
@@ -276,11 +288,8 @@ impl Model {
     /// the principal angle.
     pub fn turn_references(&self) -> Vec<JointCoordinate> {
         let mut used = Vec::new();
-        for force in &self.forces {
-            if let ForceKind::Spring { on, .. } | ForceKind::Stop { on, .. } = force.kind {
-                used.push(on);
-            }
-        }
+        let forces = self.forces.iter().filter_map(|force| force.kind.parts().on);
+        used.extend(forces.filter(|(_, of)| *of == CoordinateUse::Value).map(|(on, _)| on));
         used.extend(self.contacts.iter().map(|contact| contact.on));
         used.extend(self.couplers.iter().flat_map(|c| [c.first, c.second]));
         used.extend(self.drivers.iter().map(|d| d.coordinate));
@@ -322,18 +331,9 @@ impl Model {
 
     /// Whether something does work that the energy does not account for, counted or not.
     pub fn is_worked_on(&self) -> bool {
-        let does_work = |force: &Force| match &force.kind {
-            ForceKind::Spring { .. } => false,
-            ForceKind::Link { damping, .. } => !damping.is_zero(),
-            ForceKind::Damper { .. }
-            | ForceKind::Coulomb { .. }
-            | ForceKind::Stop { .. }
-            | ForceKind::Motor { .. }
-            | ForceKind::Load { .. } => true,
-        };
         self.is_driven()
             || self.joints.iter().any(|j| !j.damping.is_zero())
-            || self.forces.iter().any(does_work)
+            || self.forces.iter().any(|force| force.kind.does_work())
     }
 
     /// The rows that are dropped shape the formulas: other parameters must leave them as they are. The start is that

@@ -1,9 +1,9 @@
 //! Numbers of controllers, and what they may set inputs to.
 
-use num_traits::{Signed, Zero};
+use num_traits::Zero;
 
 use super::{Owner, Place, Problem, shown};
-use crate::{Controller, Law, Model, Number, Rational};
+use crate::{Controller, Law, Model, Rational};
 
 /// Numbers that make no law.
 pub(super) fn problems(model: &Model, index: usize, controller: &Controller) -> Vec<Problem> {
@@ -27,18 +27,6 @@ pub(super) fn problems(model: &Model, index: usize, controller: &Controller) -> 
         let label = format!("from {} to {}", shown(&least), shown(&largest));
         let message = format!("the limits of controller `{name}` leave nothing between them");
         wrong("limits", message, label, "write the smaller one first: limits = [-1, 1]");
-    }
-    let is_negative = |step: &&Number| model.exact(step).is_negative();
-    let steps = [
-        ("output_step", controller.output_steps.iter().find(is_negative)),
-        ("input_step", Some(&controller.input_step).filter(is_negative)),
-    ];
-    for (key, step) in steps {
-        if let Some(step) = step {
-            let label = shown(&model.exact(step));
-            let help = "write the size of a step of the converter, or 0 for none";
-            wrong(key, format!("the `{key}` of controller `{name}` is negative"), label, help);
-        }
     }
     found
 }

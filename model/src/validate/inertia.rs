@@ -11,21 +11,6 @@ pub(super) fn is_left_out(body: &Body, numbers: &[Number]) -> bool {
     matches!(body.support, Support::Fixed | Support::Driven) && numbers.iter().all(Number::is_zero)
 }
 
-/// The mass of a body.
-pub(super) fn mass(model: &Model, index: usize, body: &Body) -> Option<Problem> {
-    let value = model.exact(&body.mass);
-    if value.is_positive() || is_left_out(body, std::slice::from_ref(&body.mass)) {
-        return None;
-    }
-    Some(Problem {
-        place: Place::body(index, "mass"),
-        also: None,
-        message: format!("the mass of body `{}` is not positive", body.name),
-        label: format!("{} kg", shown(&value)),
-        help: "write a mass greater than 0, in kg".to_owned(),
-    })
-}
-
 /// What point masses make of a body: what is written was checked as it was read.
 pub(super) fn size(model: &Model, index: usize, body: &Body) -> Option<Problem> {
     let numbers = std::iter::once(&body.mass).chain(&body.inertia);

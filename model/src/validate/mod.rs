@@ -5,9 +5,9 @@ mod contacts;
 mod controllers;
 mod coordinates;
 mod directions;
-mod forces;
 mod inertia;
 mod numbers;
+mod ranges;
 mod rules;
 mod topology;
 
@@ -15,6 +15,7 @@ pub(crate) use controllers::settings_problems;
 pub(crate) use coordinates::problems as coordinate_problems;
 pub use inertia::is_inertia;
 pub(crate) use numbers::problems as number_problems;
+pub(crate) use ranges::out_of_range;
 pub use rules::ParameterRule;
 pub(crate) use topology::problems as topology_problems;
 
