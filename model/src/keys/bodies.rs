@@ -54,7 +54,8 @@ pub static BODY: Table = Table {
         tables(
             &POINT_MASS,
             "one `[[body.point_mass]]` a point mass, below; not of fixed and driven bodies",
-        ),
+        )
+        .example("[[body.point_mass]] on a line of its own above each point mass"),
         vector(
             "position",
             "m",
@@ -90,7 +91,11 @@ pub static BODY: Table = Table {
             "list of tables, `[[body.shape]]`: what the body looks like in pictures ([show.md](show.md)); nothing else \
              asks for it",
         )
-        .default(""),
+        .default("")
+        .example(
+            "[[body.shape]] on a line of its own, then box = [x, y, z], cylinder = [radius, length], sphere = radius \
+             or mesh = \"file.stl\"",
+        ),
     ],
     kinds: &[],
 };

@@ -39,7 +39,7 @@ const LEAD: Key = number(
     "m/rad",
     "screw: advance of the second body along the axis, not 0; negative for a left-handed thread",
 )
-.within(Range::NotZero("the screw would not advance"))
+.within(Range::NotZero("a screw that does not advance is of kind \"revolute\""))
 .default("required")
 .example("lead = ..., in m/rad, or pitch = ..., in m a turn");
 const PITCH: Key = plain("pitch", "m a turn", "the same, in place of `lead`");

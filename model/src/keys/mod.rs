@@ -259,7 +259,8 @@ const fn tables(table: &'static Table, meaning: &'static str) -> Key {
 const KIND: Key = Key::new("kind", Value::Kind, "one of the kinds below").required();
 /// Of what acts on a joint coordinate.
 const ON_JOINT: Key = reference("joint", "the joint along whose coordinate it acts");
-const ON_COORDINATE: Key =
-    text("coordinate", "which coordinate, of a joint with several").default("of a joint with one: that one");
+const ON_COORDINATE: Key = text("coordinate", "which coordinate, of a joint with several")
+    .default("of a joint with one: that one")
+    .example("coordinate = \"angle\"");
 /// Of what is at a point of a body.
 const POINT: Key = vector("point", "m", "a point of the body, in its frame").default("[0, 0, 0]");

@@ -169,7 +169,9 @@ pub static EVENT: Table = Table {
         )
         .required()
         .example("of = \"...\": a joint coordinate, a rate (\"joint rate\"), or a number of an output"),
-        text("minus", "what is subtracted from it, likewise").default("none"),
+        text("minus", "what is subtracted from it, likewise")
+            .default("none")
+            .example("minus = \"...\", the name of a column of a run's table"),
         number("level", "", "the level").default("0"),
         Key::new(
             "direction",

@@ -91,9 +91,7 @@ impl<'t> Section<'t> {
         cure: fn(&Kind, &str) -> Option<String>,
     ) -> Option<&'static Kind> {
         let item = self.find(reader, "kind")?;
-        let words: Vec<&str> = self.keys.kinds.iter().map(|kind| kind.word).collect();
-        let word = item.one_of(reader, &format!("kind of {}", self.keys.name), &words)?;
-        let own = self.keys.kind(word)?;
+        let own = item.kind(reader, self.keys)?;
         self.kind = Some(own);
         let is_common = |key: &Key| self.keys.keys.iter().any(|common| common.name == key.name);
         let all = self.keys.all();
@@ -354,12 +352,27 @@ impl<'t> Item<'t> {
     pub(super) fn word(&self, reader: &mut Reader<'_>) -> Option<&'static str> {
         let Value::Word(words) = self.key.value else { return None };
         let known: Vec<&'static str> = words.iter().map(|(word, _)| *word).collect();
-        self.one_of(reader, self.key.name.trim_end_matches('s'), &known)
+        let cannot = |written: &str| format!("`{}` cannot be {written:?}", self.key.name);
+        self.one_of(reader, &known, (None, "its words"), cannot)
     }
 
-    /// One of some words.
-    fn one_of(&self, reader: &mut Reader<'_>, what: &str, known: &[&'static str]) -> Option<&'static str> {
-        let key = self.key.name.trim_end_matches('s');
+    /// One of a table's kinds.
+    fn kind(&self, reader: &mut Reader<'_>, table: &'static Table) -> Option<&'static Kind> {
+        let known: Vec<&'static str> = table.kinds.iter().map(|kind| kind.word).collect();
+        let what = format!("kind of {}", table.name);
+        let unknown = |written: &str| format!("unknown {what} `{written}`");
+        let word = self.one_of(reader, &known, (Some(&what), "the kinds"), unknown)?;
+        table.kind(word)
+    }
+
+    /// One of some words, with the message for another.
+    fn one_of(
+        &self,
+        reader: &mut Reader<'_>,
+        known: &[&'static str],
+        (kind, words): (Option<&str>, &str),
+        message: impl Fn(&str) -> String,
+    ) -> Option<&'static str> {
         let Some(written) = self.value.get_ref().as_str() else {
             let help = format!("write {}", choice_example(self.key.name, known));
             self.wrong_type_with(reader, "a string", help);
@@ -368,12 +381,13 @@ impl<'t> Item<'t> {
         let found = known.iter().copied().find(|name| *name == written);
         if found.is_none() {
             let list = names::list(known);
-            let help = match (synonyms::no_kind(written, what), names::meant(written, known)) {
+            let elsewhere = kind.and_then(|kind| synonyms::no_kind(written, kind));
+            let help = match (elsewhere, names::meant(written, known)) {
                 (Some(help), _) => help.to_owned(),
-                (None, Some(name)) => format!("write `{name}`; the {key}s are {list}"),
-                (None, None) => format!("the {key}s are {list}"),
+                (None, Some(name)) => format!("write `{name}`; {words} are {list}"),
+                (None, None) => format!("{words} are {list}"),
             };
-            self.wrong(reader, [format!("unknown {what} `{written}`"), format!("not a {key}"), help]);
+            self.wrong(reader, [message(written), format!("not one of {words}"), help]);
         }
         found
     }
