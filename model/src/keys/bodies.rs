@@ -1,8 +1,6 @@
 //! Bodies, with what they are made of, how they move and what they look like.
 
-use super::{
-    Key, POINT, Range, Table, Value, flag, name, number, orientation, plain, table, tables, text, vector,
-};
+use super::{Key, Range, Table, Value, flag, name, number, orientation, plain, table, tables, text, vector};
 
 const UNLESS: &str = "required, unless fixed and folded, or driven, or there are point masses";
 
@@ -192,7 +190,7 @@ pub static SHAPE: Table = Table {
             .example(
                 "color = \"steelblue\", or any other of the names that CSS has for colours, or color = \"#4682b4\"",
             ),
-        Key { name: "position", ..POINT },
+        vector("position", "m", "its centre (a mesh's origin), in the body's frame").default("[0, 0, 0]"),
         orientation("Euler parameters in the body's frame").default("[1, 0, 0, 0]"),
     ],
     kinds: &[],

@@ -109,7 +109,7 @@ pub static FORCE: Table = Table {
             "a force at a point of a body and a torque on it, constant in a frame",
             &[
                 reference("body", "the body"),
-                POINT,
+                Key { meaning: "", ..POINT },
                 Key {
                     meaning: "it or `torque` must be there",
                     example: "force = [0, 0, 0], in N, or torque = [0, 0, 0], in N.m",
@@ -119,7 +119,7 @@ pub static FORCE: Table = Table {
                 Key::new(
                     "frame",
                     Value::Word(&[("global", "the global frame"), ("body", "the body's own frame")]),
-                    "the frame in which it is constant, `\"global\"` or `\"body\"`",
+                    "or `\"body\"`: the frame in which it is constant",
                 )
                 .default("\"global\""),
             ],

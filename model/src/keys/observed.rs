@@ -1,14 +1,13 @@
 //! What is computed besides the motion, and what acts on it from instant to instant.
 
 use super::{
-    KIND, Key, ON_COORDINATE, ON_JOINT, POINT, Range, Table, Value, flag, kind, name, number, orientation,
-    plain, reference, text,
+    KIND, Key, ON_COORDINATE, ON_JOINT, Range, Table, Value, flag, kind, name, number, orientation, plain,
+    reference, text,
 };
 
 const BODY: Key = reference("body", "the body");
-const AXES: Key =
-    orientation("how the output's axes are turned in the body's frame: Euler parameters, of any length")
-        .default("the body's axes");
+const POINT: Key = Key { meaning: "", ..super::POINT };
+const AXES: Key = orientation("Euler parameters of the output's axes").default("the body's axes");
 const FORCE: Key = reference("force", "the spring or link");
 
 /// `[[output]]`.
