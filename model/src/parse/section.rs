@@ -217,6 +217,138 @@ impl<'t> Section<'t> {
     }
 
     /// One of the key's words.
+    pub(super) fn word(&self, reader: &mut Reader<'_>, name: &'static str) -> Option<&'static str> {
+        let item = self.find(reader, name)?;
+        item.word(reader)
+    }
+
+    /// Remarks on a key that is written by its former name, or refuses it beside the present one.
+    fn former(&self, reader: &mut Reader<'_>, written: &Spanned<DeString<'_>>, key: &'static Key) {
+        let (span, written, name, title) = (written.span(), written.get_ref(), key.name, &self.title);
+        if self.table.contains_key(name) {
+            let message = format!("`{written}` is the former name of `{name}`, which {title} has, too");
+            reader.wrong(self.place(name), span, [message, "given twice".to_owned(), "remove it".to_owned()]);
+        } else {
+            reader.remarks.push(format!("`{written}` of {title} is `{name}` now: write {name} = ..."));
+        }
+    }
+
+    fn unknown(&self, reader: &mut Reader<'_>, key: &Spanned<DeString<'_>>, known: &[&'static Key]) {
+        let (written, title) = (key.get_ref(), &self.title);
+        let known = called(known.iter().copied());
+        let elsewhere = synonyms::elsewhere(written, &known);
+        let meant = names::meant(written, &known).filter(|_| elsewhere.is_none());
+        let nearest = meant.and_then(|name| known.iter().copied().find(|known| *known == name));
+        let help = match (elsewhere, nearest) {
+            (Some(help), _) => help.to_owned(),
+            (None, Some(name)) if self.table.contains_key(name) => {
+                format!("remove it: there is `{name}` already")
+            }
+            (None, Some(name)) => format!("write `{name}`"),
+            (None, None) => format!("its keys are {}", names::list(&known)),
+        };
+        if let Some(name) = nearest {
+            // The key that was meant is not reported as missing, too.
+            reader.doubt(self.place(name));
+        }
+        let words = [format!("unknown key `{written}` in {title}"), "not a valid key".to_owned(), help];
+        reader.unknown(key.span(), words);
+    }
+}
+
+/// The names of keys.
+fn called(keys: impl IntoIterator<Item = &'static Key>) -> Vec<&'static str> {
+    keys.into_iter().map(|key| key.name).collect()
+}
+
+/// What to write under a key.
+pub(super) fn cure(key: &Key) -> String {
+    let name = key.name;
+    match key.value {
+        _ if !key.example.is_empty() => key.example.to_owned(),
+        Value::Word(words) => choice_example(name, &words.iter().map(|(word, _)| *word).collect::<Vec<_>>()),
+        Value::Reference => format!("{name} = \"...\", the name of a [[{name}]]"),
+        Value::Flag => format!("{name} = true"),
+        Value::Text => format!("{name} = \"...\""),
+        Value::Name => format!("{name} = \"some_name\""),
+        Value::Table(table) => format!("{name} = {{ {} = \"...\" }}", table.keys[0].name),
+        Value::Tables(_) => format!("[[{name}]] on a line of its own above each {}", name.replace('_', " ")),
+        _ => key.cure(),
+    }
+}
+
+impl<'t> Item<'t> {
+    pub(super) fn span(&self) -> Range<usize> {
+        self.value.span()
+    }
+
+    pub(super) fn wrong(&self, reader: &mut Reader<'_>, words: [String; 3]) {
+        reader.wrong(self.place, self.span(), words);
+    }
+
+    /// Reports that something of another type was expected.
+    pub(super) fn wrong_type(&self, reader: &mut Reader<'_>, expected: &str) {
+        self.wrong_type_with(reader, expected, format!("write {}", cure(self.key)));
+    }
+
+    /// The same with another cure.
+    pub(super) fn wrong_type_with(&self, reader: &mut Reader<'_>, expected: &str, help: String) {
+        let words = [
+            format!("`{}` must be {expected}", self.key.name),
+            format!("found {}", found(self.value.get_ref())),
+            help,
+        ];
+        self.wrong(reader, words);
+    }
+
+    pub(super) fn text(&self, reader: &mut Reader<'_>) -> Option<&'t str> {
+        let text = self.value.get_ref().as_str();
+        if text.is_none() {
+            self.wrong_type(reader, "a string");
+        }
+        text
+    }
+
+    /// An array of some texts, each with its place.
+    pub(super) fn texts(&self, reader: &mut Reader<'_>, expected: &str) -> Option<Vec<(Self, &'t str)>> {
+        let word = |value| Some((Item { value, ..*self }, value.get_ref().as_str()?));
+        let elements = self.value.get_ref().as_array();
+        let texts = elements.and_then(|elements| elements.iter().map(word).collect::<Option<Vec<_>>>());
+        if texts.is_none() {
+            self.wrong_type(reader, expected);
+        }
+        texts
+    }
+
+    pub(super) fn table(&self, reader: &mut Reader<'_>) -> Option<&'t DeTable<'t>> {
+        let value = self.value.get_ref();
+        match (value.as_table(), value.as_str(), self.key.value) {
+            (Some(_), ..) => {}
+            // A name alone is that of what the table names first.
+            (
+                None,
+                Some(text),
+                Value::Table(Table { keys: [Key { name, value: Value::Reference, .. }, ..], .. }),
+            ) => {
+                let help = format!("write {} = {{ {name} = {text:?} }}", self.key.name);
+                self.wrong_type_with(reader, "a table", help);
+            }
+            _ => self.wrong_type(reader, "a table"),
+        }
+        value.as_table()
+    }
+
+    /// The tables of an array.
+    pub(super) fn tables(&self, reader: &mut Reader<'_>) -> Vec<(Self, &'t DeTable<'t>)> {
+        let Some(elements) = self.value.get_ref().as_array() else {
+            self.wrong_type(reader, "an array of tables");
+            return Vec::new();
+        };
+        let items = elements.iter().map(|value| Item { value, ..*self });
+        items.filter_map(|item| Some((item, item.table(reader)?))).collect()
+    }
+
+    /// One of the key's words.
     pub(super) fn word(&self, reader: &mut Reader<'_>) -> Option<&'static str> {
         let Value::Word(words) = self.key.value else { return None };
         let known: Vec<&'static str> = words.iter().map(|(word, _)| *word).collect();
