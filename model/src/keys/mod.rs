@@ -119,6 +119,14 @@ pub enum Range {
 }
 
 impl Table {
+    const fn new(name: &'static str, meaning: &'static str, keys: &'static [Key]) -> Self {
+        Self { name, meaning, keys, kinds: &[] }
+    }
+
+    const fn of_kinds(self, kinds: &'static [Kind]) -> Self {
+        Self { kinds, ..self }
+    }
+
     /// One of it, with its article.
     pub fn noun(&self) -> String {
         let article = if self.name.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" };
@@ -173,15 +181,23 @@ impl Key {
         Self { is_required: true, default: "required", ..self }
     }
 
-    const fn default(self, default: &'static str) -> Self {
+    const fn or(self, default: &'static str) -> Self {
         Self { default, ..self }
     }
 
-    const fn within(self, range: Range) -> Self {
-        Self { range, ..self }
+    const fn positive(self, why: &'static str) -> Self {
+        Self { range: Range::Positive(why), ..self }
     }
 
-    const fn example(self, example: &'static str) -> Self {
+    const fn not_negative(self, why: &'static str) -> Self {
+        Self { range: Range::NotNegative(why), ..self }
+    }
+
+    const fn not_zero(self, why: &'static str) -> Self {
+        Self { range: Range::NotZero(why), ..self }
+    }
+
+    const fn eg(self, example: &'static str) -> Self {
         Self { example, ..self }
     }
 
@@ -233,11 +249,15 @@ const fn orientation(meaning: &'static str) -> Key {
 }
 
 const fn flag(name: &'static str, meaning: &'static str) -> Key {
-    Key::new(name, Value::Flag, meaning).default("false")
+    Key::new(name, Value::Flag, meaning).or("false")
 }
 
 const fn text(name: &'static str, meaning: &'static str) -> Key {
     Key::new(name, Value::Text, meaning)
+}
+
+const fn word(name: &'static str, words: &'static [(&str, &str)], meaning: &'static str) -> Key {
+    Key::new(name, Value::Word(words), meaning)
 }
 
 const fn name(meaning: &'static str) -> Key {
@@ -253,14 +273,13 @@ const fn table(name: &'static str, table: &'static Table, meaning: &'static str)
 }
 
 const fn tables(table: &'static Table, meaning: &'static str) -> Key {
-    Key::new(table.name, Value::Tables(table), meaning).default("none")
+    Key::new(table.name, Value::Tables(table), meaning).or("none")
 }
 
 const KIND: Key = Key::new("kind", Value::Kind, "one of the kinds below").required();
 /// Of what acts on a joint coordinate.
-const ON_JOINT: Key = reference("joint", "the joint along whose coordinate it acts");
-const ON_COORDINATE: Key = text("coordinate", "which coordinate, of a joint with several")
-    .default("of a joint with one: that one")
-    .example("coordinate = \"angle\"");
+const ON_JOINT: Key = reference("joint", "name of the joint");
+const ON_COORDINATE: Key =
+    text("coordinate", "which coordinate, unless the joint has just one").eg("coordinate = \"angle\"");
 /// Of what is at a point of a body.
-const POINT: Key = vector("point", "m", "a point of the body, in its frame").default("[0, 0, 0]");
+const POINT: Key = vector("point", "m", "").or("[0, 0, 0]");

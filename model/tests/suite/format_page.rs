@@ -67,28 +67,51 @@ fn default(key: &Key) -> String {
     if is_code { format!("`{}`", key.default) } else { key.default.to_owned() }
 }
 
+/// The meaning of a key, with its words.
+fn meaning(key: &Key) -> String {
+    let Value::Word(words) = key.value else { return key.meaning.to_owned() };
+    let words = words.iter().map(|(word, meaning)| match *meaning {
+        "" => format!("`{word:?}`"),
+        meaning => format!("`{word:?}` ({meaning})"),
+    });
+    let words = words.collect::<Vec<_>>().join(", ");
+    if key.meaning.is_empty() { words } else { format!("{}: {words}", key.meaning) }
+}
+
+/// The keys of a table. Those of joints' kinds are among them, with the kinds that have them unless most do.
 fn keys_table(table: &'static Table) -> String {
-    // What acts by its kind has its keys with the kinds.
-    let own: Vec<&Key> = table.keys.iter().collect();
-    let all = if table.name == "joint" { table.all() } else { own };
-    let row = |key: &&Key| vec![format!("`{}`", key.name), key.meaning.to_owned(), unit(key), default(key)];
+    let all = if table.name == "joint" { table.all() } else { table.keys.iter().collect() };
+    let row = |key: &&Key| {
+        let kinds = table.kinds.iter().filter(|kind| kind.key(key.name).is_some()).map(|kind| kind.word);
+        let kinds: Vec<&str> = kinds.collect();
+        let of = if matches!(kinds.len(), 1..=5) { format!("{}: ", kinds.join(", ")) } else { String::new() };
+        let range = match range(key) {
+            "" => String::new(),
+            range => format!(",{range}"),
+        };
+        vec![format!("`{}`", key.name), format!("{of}{}{range}", meaning(key)), unit(key), default(key)]
+    };
     markdown(&["key", "meaning", "unit", "default"], &all.iter().map(row).collect::<Vec<_>>())
 }
 
-/// A key of a kind in one phrase.
-fn phrase(key: &Key) -> String {
-    let range = match key.range {
+fn range(key: &Key) -> &'static str {
+    match key.range {
         Range::Any => "",
         Range::Positive(_) => " > 0",
         Range::NotNegative(_) => " ≥ 0",
         Range::NotZero(_) => " ≠ 0",
-    };
+    }
+}
+
+/// A key of a kind in one phrase.
+fn phrase(key: &Key) -> String {
+    let range = range(key);
     let default = match default(key) {
         words if key.is_required || words.is_empty() => String::new(),
         words if words.starts_with("required") => words,
         words => format!("{words} unless given"),
     };
-    let words = [unit(key), default, key.meaning.to_owned()];
+    let words = [unit(key), default, meaning(key)];
     let words: Vec<String> = words.into_iter().filter(|words| !words.is_empty()).collect();
     match (key.name, words.as_slice()) {
         _ if matches!(key.value, Value::Reference) || key.name == "coordinate" => format!("`{}`", key.name),

@@ -68,7 +68,10 @@ fn value(of: &'static Table, value: Value, is_required: bool, definitions: &mut 
         array
     };
     let words = |words: &[(&str, &str)]| {
-        let all = words.iter().map(|(word, meaning)| json!({ "const": word, "description": plain(meaning) }));
+        let all = words.iter().map(|(word, meaning)| match *meaning {
+            "" => json!({ "const": word }),
+            meaning => json!({ "const": word, "description": plain(meaning) }),
+        });
         json!({ "oneOf": all.collect::<Vec<_>>() })
     };
     match value {
@@ -141,7 +144,12 @@ fn said(key: &Key) -> String {
     } else {
         format!("; default: {}", key.default)
     };
-    plain(&format!("{text}{default}."))
+    plain(
+        format!("{text}{default}.")
+            .replace(", see below", "")
+            .trim_start_matches("; ")
+            .trim_start_matches('.'),
+    )
 }
 
 /// Markdown without the targets of links.
