@@ -6,7 +6,7 @@ use toml::de::DeValue;
 use super::names;
 use super::numbers::numbers;
 use super::reader::Reader;
-use super::section::{Item, Section};
+use super::section::{Item, Section, all};
 use super::seen::{self, Known};
 use super::tables;
 use crate::diagnostics::Related;
@@ -65,8 +65,7 @@ fn words<T>(
         item.wrong(reader, [message, format!("found {}", words.len()), help]);
         return None;
     }
-    let all: Vec<Option<T>> = words.into_iter().map(|(item, word)| meaning(reader, item, word)).collect();
-    all.into_iter().collect()
+    all(words.into_iter().map(|(item, word)| meaning(reader, item, word)))
 }
 
 fn input(reader: &mut Reader<'_>, item: Item<'_>, word: &str) -> Option<usize> {

@@ -5,7 +5,7 @@ use super::section::Section;
 use super::{references, tables};
 use crate::keys::Kind;
 use crate::validate::{Owner, Side};
-use crate::{Force, ForceKind, LoadFrame, Number, StopSide};
+use crate::{Force, ForceKind, JointCoordinate, LoadFrame, Number, StopSide};
 
 /// Reads all forces.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Force> {
@@ -32,21 +32,16 @@ impl Reading<'_, '_, '_> {
     fn force(&mut self, kind: &Kind) -> ForceKind {
         match kind.word {
             "spring" => ForceKind::Spring {
-                on: references::coordinate(self.reader, &self.section),
+                on: self.on(),
                 stiffness: self.number("stiffness"),
                 free: self.number("free"),
             },
-            "damper" => ForceKind::Damper {
-                on: references::coordinate(self.reader, &self.section),
-                damping: self.number("damping"),
-            },
-            "coulomb" => ForceKind::Coulomb {
-                on: references::coordinate(self.reader, &self.section),
-                level: self.number("level"),
-                rate: self.number("rate"),
-            },
+            "damper" => ForceKind::Damper { on: self.on(), damping: self.number("damping") },
+            "coulomb" => {
+                ForceKind::Coulomb { on: self.on(), level: self.number("level"), rate: self.number("rate") }
+            }
             "stop" => ForceKind::Stop {
-                on: references::coordinate(self.reader, &self.section),
+                on: self.on(),
                 limit: self.number("limit"),
                 side: match self.section.word(self.reader, "side") {
                     Some("lower") => StopSide::Lower,
@@ -56,13 +51,14 @@ impl Reading<'_, '_, '_> {
                 damping: self.number("damping"),
                 softness: self.number("softness"),
             },
-            "motor" => ForceKind::Motor {
-                on: references::coordinate(self.reader, &self.section),
-                value: self.number("value"),
-            },
+            "motor" => ForceKind::Motor { on: self.on(), value: self.number("value") },
             "link" => self.link(),
             _ => self.load(),
         }
+    }
+
+    fn on(&mut self) -> JointCoordinate {
+        references::coordinate(self.reader, &self.section)
     }
 
     fn number(&mut self, key: &'static str) -> Number {

@@ -5,7 +5,7 @@ use toml::de::DeValue;
 use super::names;
 use super::numbers::{number, radians, turns};
 use super::reader::Reader;
-use super::section::{Item, Section, found};
+use super::section::{Item, Section, all, found};
 use super::table;
 use crate::keys::{MOTION, SINUSOID};
 use crate::{Motion, Number};
@@ -73,14 +73,11 @@ fn not_one_form(section: &Section<'_>) -> [String; 3] {
 }
 
 fn polynomial(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
-    let elements = item.value.get_ref().as_array().filter(|elements| !elements.is_empty());
-    let Some(elements) = elements else {
+    if item.elements().next().is_none() {
         item.wrong_type(reader, "an array of coefficients: the degree cannot be a parameter");
         return None;
-    };
-    let coefficients: Vec<Option<Number>> =
-        elements.iter().map(|value| number(reader, Item { value, ..item })).collect();
-    coefficients.into_iter().collect::<Option<Vec<Number>>>().map(Motion::Polynomial)
+    }
+    all(item.elements().map(|item| number(reader, item))).map(Motion::Polynomial)
 }
 
 fn sinusoid(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
@@ -118,18 +115,11 @@ fn phase(reader: &mut Reader<'_>, section: &Section<'_>) -> Option<Number> {
 
 /// The motions of an array: at least one, or so many.
 pub(super) fn several(reader: &mut Reader<'_>, item: Item<'_>, length: usize) -> Option<Vec<Motion>> {
-    let elements = item.value.get_ref().as_array();
-    let is_fit = |length_is: usize| if length == 0 { length_is > 0 } else { length_is == length };
-    let Some(elements) = elements.filter(|elements| is_fit(elements.len())) else {
-        let expected = if length == 0 {
-            "an array of motions".to_owned()
-        } else {
-            format!("an array of {length} motions")
-        };
-        item.wrong_type(reader, &expected);
+    let found = item.elements().count();
+    if found == 0 || length > 0 && found != length {
+        let many = if length == 0 { String::new() } else { format!("{length} ") };
+        item.wrong_type(reader, &format!("an array of {many}motions"));
         return None;
-    };
-    let motions: Vec<Option<Motion>> =
-        elements.iter().map(|value| read(reader, Item { value, ..item })).collect();
-    motions.into_iter().collect()
+    }
+    all(item.elements().map(|item| read(reader, item)))
 }

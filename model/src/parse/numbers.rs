@@ -6,7 +6,7 @@ use toml::de::DeValue;
 use super::computed::{self, Fault, Meaning};
 use super::expression::{self, Term};
 use super::reader::Reader;
-use super::section::{Item, Section, found};
+use super::section::{Item, Section, all, found};
 use super::{names, units};
 use crate::keys::{FORCE, Key, Value};
 use crate::number::{SIZE_EXPONENT, in_range};
@@ -169,9 +169,7 @@ pub(super) fn numbers(reader: &mut Reader<'_>, item: Item<'_>, length: usize) ->
     if elements.len() != length {
         item.wrong_type_with(reader, &what, help);
     }
-    let numbers: Vec<Option<Number>> =
-        elements.iter().map(|value| number(reader, Item { value, ..item })).collect();
-    let numbers: Option<Vec<Number>> = numbers.into_iter().collect();
+    let numbers = all(item.elements().map(|item| number(reader, item)));
     numbers.filter(|numbers| numbers.len() == length)
 }
 

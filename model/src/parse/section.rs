@@ -256,6 +256,11 @@ impl<'t> Section<'t> {
     }
 }
 
+/// All of some things, where none is missing; each is asked for, so that all mistakes are found.
+pub(super) fn all<T>(things: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+    things.collect::<Vec<_>>().into_iter().collect()
+}
+
 /// The names of keys.
 fn called(keys: impl IntoIterator<Item = &'static Key>) -> Vec<&'static str> {
     keys.into_iter().map(|key| key.name).collect()
@@ -309,6 +314,12 @@ impl<'t> Item<'t> {
         text
     }
 
+    /// The elements of an array; none of what is no array.
+    pub(super) fn elements(self) -> impl Iterator<Item = Self> + 't {
+        let elements = self.value.get_ref().as_array().into_iter().flat_map(|array| array.iter());
+        elements.map(move |value| Item { value, ..self })
+    }
+
     /// An array of some texts, each with its place.
     pub(super) fn texts(&self, reader: &mut Reader<'_>, expected: &str) -> Option<Vec<(Self, &'t str)>> {
         let word = |value| Some((Item { value, ..*self }, value.get_ref().as_str()?));
@@ -340,12 +351,10 @@ impl<'t> Item<'t> {
 
     /// The tables of an array.
     pub(super) fn tables(&self, reader: &mut Reader<'_>) -> Vec<(Self, &'t DeTable<'t>)> {
-        let Some(elements) = self.value.get_ref().as_array() else {
+        if self.value.get_ref().as_array().is_none() {
             self.wrong_type(reader, "an array of tables");
-            return Vec::new();
-        };
-        let items = elements.iter().map(|value| Item { value, ..*self });
-        items.filter_map(|item| Some((item, item.table(reader)?))).collect()
+        }
+        self.elements().filter_map(|item| Some((item, item.table(reader)?))).collect()
     }
 
     /// One of the key's words.

@@ -1,11 +1,10 @@
 //! Inertia tensors in their three forms.
 
-use toml::Spanned;
 use toml::de::DeValue;
 
 use super::numbers::vector;
 use super::reader::Reader;
-use super::section::{Item, Section};
+use super::section::{Item, Section, all};
 use crate::Number;
 use crate::keys::ELEMENTS;
 
@@ -14,7 +13,7 @@ pub(super) fn tensor(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number;
     match item.value.get_ref() {
         DeValue::Table(_) => tensor_of_elements(reader, item),
         DeValue::Array(rows) if !rows.is_empty() && rows.iter().all(|row| row.get_ref().is_array()) => {
-            tensor_of_rows(reader, item, rows)
+            tensor_of_rows(reader, item)
         }
         DeValue::Array(elements) if elements.len() == 3 => {
             let [xx, yy, zz] = vector(reader, item)?;
@@ -47,12 +46,8 @@ fn tensor_of_elements(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number
     Some([xx, yy, zz, xy, xz, yz])
 }
 
-fn tensor_of_rows(
-    reader: &mut Reader<'_>,
-    item: Item<'_>,
-    rows: &[Spanned<DeValue<'_>>],
-) -> Option<[Number; 6]> {
-    if rows.len() != 3 {
+fn tensor_of_rows(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number; 6]> {
+    if item.elements().count() != 3 {
         item.wrong_type_with(
             reader,
             "a matrix of three rows of three numbers",
@@ -60,9 +55,7 @@ fn tensor_of_rows(
         );
         return None;
     }
-    let rows: Vec<Option<[Number; 3]>> =
-        rows.iter().map(|value| vector(reader, Item { value, ..item })).collect();
-    let rows: Vec<[Number; 3]> = rows.into_iter().collect::<Option<_>>()?;
+    let rows: Vec<[Number; 3]> = all(item.elements().map(|row| vector(reader, row)))?;
     for (i, j) in [(0, 1), (0, 2), (1, 2)] {
         if rows[i][j] != rows[j][i] {
             let axes = ["x", "y", "z"];

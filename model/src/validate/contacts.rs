@@ -10,7 +10,7 @@ pub(super) fn problems(model: &Model, index: usize, contact: &Contact) -> Vec<Pr
     let mut found = Vec::new();
     let mut wrong = |key, message: String, label: String, help: &str| {
         let place = Place { owner: Owner::Contact(index), key };
-        found.push(Problem { place, also: None, message, label, help: help.to_owned() });
+        found.push(Problem::new(place, message, label, help.to_owned()));
     };
     let name = &contact.name;
     if let [Some(lower), Some(upper)] =

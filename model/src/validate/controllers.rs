@@ -10,7 +10,7 @@ pub(super) fn problems(model: &Model, index: usize, controller: &Controller) -> 
     let mut found = Vec::new();
     let mut wrong = |key, message: String, label: String, help: &str| {
         let place = Place { owner: Owner::Controller(index), key };
-        found.push(Problem { place, also: None, message, label, help: help.to_owned() });
+        found.push(Problem::new(place, message, label, help.to_owned()));
     };
     let name = &controller.name;
     if let Law::TransferFunction { denominator, .. } = &controller.law
@@ -44,15 +44,12 @@ pub(crate) fn settings_problems(model: &Model) -> Vec<Problem> {
             if let Some(words) = refusal {
                 let place = Place { owner: Owner::Controller(index), key: "inputs" };
                 let (name, input) = (&controller.name, &model.inputs[*input].name);
-                found.push(Problem {
+                found.push(Problem::new(
                     place,
-                    also: None,
-                    message: format!(
-                        "controller `{name}` may set the input `{input}` to what it must not be"
-                    ),
-                    label: words,
-                    help: "keep it where it makes sense: limits = [least, largest]".to_owned(),
-                });
+                    format!("controller `{name}` may set the input `{input}` to what it must not be"),
+                    words,
+                    "keep it where it makes sense: limits = [least, largest]",
+                ));
             }
         }
     }

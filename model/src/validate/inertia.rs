@@ -16,15 +16,13 @@ pub(super) fn size(model: &Model, index: usize, body: &Body) -> Option<Problem> 
     let numbers = std::iter::once(&body.mass).chain(&body.inertia);
     let mut numbers = numbers.chain(&body.frame).chain(&body.position).chain(&body.velocity);
     let is_wide = numbers.any(|number| !in_range(&model.exact(number)));
-    is_wide.then(|| Problem {
-        place: Place::body(index, "point_mass"),
-        also: None,
-        message: format!(
-            "body `{}` with its point masses is too large or too small to compute with",
-            body.name
-        ),
-        label: "make a moment of inertia or a place of such a size".to_owned(),
-        help: format!("a number is 0, or its size is between 1e-{SIZE_EXPONENT} and 1e{SIZE_EXPONENT}"),
+    is_wide.then(|| {
+        Problem::new(
+            Place::body(index, "point_mass"),
+            format!("body `{}` with its point masses is too large or too small to compute with", body.name),
+            "make a moment of inertia or a place of such a size",
+            format!("a number is 0, or its size is between 1e-{SIZE_EXPONENT} and 1e{SIZE_EXPONENT}"),
+        )
     })
 }
 
@@ -42,12 +40,8 @@ pub(super) fn inertia(model: &Model, index: usize, body: &Body) -> Option<Proble
         return None;
     }
     let tensor = Tensor(body.inertia.each_ref().map(|x| model.exact(x)));
-    let problem = |message: String, label: &str, help: &str| Problem {
-        place: Place::body(index, "inertia"),
-        also: None,
-        message,
-        label: label.to_owned(),
-        help: help.to_owned(),
+    let problem = |message: String, label: &str, help: &str| {
+        Problem::new(Place::body(index, "inertia"), message, label.to_owned(), help.to_owned())
     };
     if !tensor.is_positive() {
         let message = format!("the inertia of body `{}` is not positive definite", body.name);

@@ -84,6 +84,22 @@ pub(crate) struct Problem {
     pub(crate) help: String,
 }
 
+impl Problem {
+    pub(crate) fn new(
+        place: Place,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
+        Self { place, also: None, message: message.into(), label: label.into(), help: help.into() }
+    }
+
+    /// The same with another place, and a few words there.
+    pub(crate) fn also(self, place: Place, words: impl Into<String>) -> Self {
+        Self { also: Some((place, words.into())), ..self }
+    }
+}
+
 impl Place {
     pub(crate) fn body(index: usize, key: &'static str) -> Self {
         Self { owner: Owner::Body(index), key }

@@ -48,11 +48,12 @@ fn sizes<'m>(
     owner: fn(usize) -> Owner,
 ) -> impl Iterator<Item = Problem> + 'm {
     let out_of_range = parameters.iter().enumerate().filter(|(_, p)| !in_range(&p.value));
-    out_of_range.map(move |(index, p)| Problem {
-        place: Place { owner: owner(index), key: "" },
-        also: None,
-        message: format!("{what} `{}` is too large or too small to compute with", p.name),
-        label: format!("{} here", shown(&p.value)),
-        help: format!("a number is 0, or its size is between 1e-{SIZE_EXPONENT} and 1e{SIZE_EXPONENT}"),
+    out_of_range.map(move |(index, p)| {
+        Problem::new(
+            Place { owner: owner(index), key: "" },
+            format!("{what} `{}` is too large or too small to compute with", p.name),
+            format!("{} here", shown(&p.value)),
+            format!("a number is 0, or its size is between 1e-{SIZE_EXPONENT} and 1e{SIZE_EXPONENT}"),
+        )
     })
 }

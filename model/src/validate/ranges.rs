@@ -97,13 +97,7 @@ impl<'m> Ranged<'m> {
     pub(super) fn problems(self, model: &Model) -> Vec<Problem> {
         let wrong = self.numbers.iter().filter_map(|(key, number)| {
             let [message, label, help] = out_of_range(key, &self.title, &model.exact(number))?;
-            Some(Problem {
-                place: Place { owner: self.owner, key: key.name },
-                also: None,
-                message,
-                label,
-                help,
-            })
+            Some(Problem::new(Place { owner: self.owner, key: key.name }, message, label, help))
         });
         wrong.collect()
     }
