@@ -43,7 +43,11 @@ fn described(mut schema: Json, description: &str) -> Json {
 fn table(of: &'static Table, definitions: &mut Map<String, Json>) -> Json {
     let mut properties = Map::new();
     for key in of.all() {
-        let schema = described(value(of, key.value, key.is_required, definitions), &description(of, key));
+        let mut schema = value(of, key.value, key.is_required, definitions);
+        let description = description(of, key);
+        if !description.is_empty() {
+            schema = described(schema, &description);
+        }
         if !key.former.is_empty() {
             let former = format!("The former name of `{}`.", key.name);
             properties.insert(key.former.to_owned(), described(schema.clone(), &former));
@@ -125,12 +129,19 @@ fn description(of: &'static Table, key: &'static Key) -> String {
             None => groups.push((said(own), vec![kind])),
         }
     }
-    let groups: Vec<String> =
-        groups.into_iter().map(|(text, kinds)| format!("{}: {text}", kinds.join(", "))).collect();
-    groups.join(" ")
+    let text = |(text, kinds): (String, Vec<&str>)| match (text.as_str(), kinds.len()) {
+        // What most kinds have is not said to be of some.
+        (_, 6..) => text,
+        ("", _) => format!("{}.", kinds.join(", ")),
+        _ => format!("{}: {text}", kinds.join(", ")),
+    };
+    groups.into_iter().map(text).collect::<Vec<_>>().join(" ")
 }
 
 fn said(key: &Key) -> String {
+    if let Value::Kind = key.value {
+        return String::new();
+    }
     let range = match key.range {
         Range::Any => "",
         Range::Positive(_) => "greater than 0",
