@@ -2,8 +2,9 @@
 
 use crate::paths;
 use crate::scene::observed;
+use gyro_model::keys::FORCE;
 use gyro_model::{
-    CoordinateKind, ForceKind, JointCoordinate, JointKind, Model, Number, Output, OutputKind, Parameter,
+    CoordinateKind, Force, JointCoordinate, JointKind, Model, Number, Output, OutputKind, Parameter,
 };
 use gyro_runner::{JointSample, Sample, Start, energy_error};
 use std::fmt::Write as _;
@@ -72,18 +73,13 @@ pub(crate) fn output_columns(model: &Model, output: &Output) -> Vec<(&'static st
     let on = match output.kind {
         OutputKind::Driver { driver } => model.drivers[driver].coordinate,
         OutputKind::Coupler { coupler } => model.couplers[coupler].second,
-        OutputKind::Spring { force } => match model.forces[force].kind {
-            ForceKind::Spring { on, .. } => on,
-            _ => return columns.to_vec(),
+        OutputKind::Spring { force } => match model.forces[force].kind.parts().on {
+            Some((on, _)) => on,
+            None => return columns.to_vec(),
         },
         _ => return columns.to_vec(),
     };
-    // Of an angle it is the first of two units.
-    let of = |unit: &'static str| {
-        let (angular, linear) = unit.split_once(" or ").unwrap_or((unit, unit));
-        if model.coordinate_kind(on).is_angle() { angular } else { linear }
-    };
-    columns.iter().map(|(suffix, unit)| (*suffix, of(unit))).collect()
+    columns.iter().map(|(suffix, unit)| (*suffix, unit_along(model, on, unit))).collect()
 }
 
 /// Name and unit of each number of all outputs, in their order.
@@ -116,21 +112,25 @@ pub(crate) fn inputs_at(model: &Model, start: &Start, sample: &Sample) -> Vec<f6
 /// Unit of an input, from the first force whose strength it is; none is told of one that nothing uses.
 pub(crate) fn input_unit(model: &Model, input: usize) -> &'static str {
     let is_it = |number: &Number| matches!(number, Number::Input { index, .. } if *index == input);
-    let along = |on: &JointCoordinate, angle, length| {
-        if model.coordinate_kind(*on).is_angle() { angle } else { length }
+    let unit = |force: &Force| {
+        let parts = force.kind.parts();
+        let (name, _) = parts.numbers.iter().find(|(_, numbers)| numbers.iter().any(is_it))?;
+        let unit = FORCE.kind(parts.word)?.key(name)?.unit()?;
+        let unit = parts.on.map_or(unit, |(on, _)| unit_along(model, on, unit));
+        Some(match unit {
+            "N.m" => "N*m",
+            "N.m.s/rad" => "N*m*s/rad",
+            "N.s/m" => "N*s/m",
+            unit => unit,
+        })
     };
-    let unit = |kind: &ForceKind| match kind {
-        ForceKind::Motor { on, value } if is_it(value) => Some(along(on, "N*m", "N")),
-        ForceKind::Coulomb { on, level, .. } if is_it(level) => Some(along(on, "N*m", "N")),
-        ForceKind::Damper { on, damping } | ForceKind::Stop { on, damping, .. } if is_it(damping) => {
-            Some(along(on, "N*m*s/rad", "N*s/m"))
-        }
-        ForceKind::Link { damping, .. } if is_it(damping) => Some("N*s/m"),
-        ForceKind::Load { force, .. } if force.iter().any(is_it) => Some("N"),
-        ForceKind::Load { torque, .. } if torque.iter().any(is_it) => Some("N*m"),
-        _ => None,
-    };
-    model.forces.iter().find_map(|force| unit(&force.kind)).unwrap_or("1")
+    model.forces.iter().find_map(unit).unwrap_or("1")
+}
+
+/// The unit along a coordinate: of an angle it is the first of two.
+fn unit_along(model: &Model, on: JointCoordinate, unit: &'static str) -> &'static str {
+    let (angular, linear) = unit.split_once(" or ").unwrap_or((unit, unit));
+    if model.coordinate_kind(on).is_angle() { angular } else { linear }
 }
 
 /// The table of a run, in a fixed order: time, inputs, joints, outputs, free bodies, energy, violations, charts.

@@ -1,5 +1,7 @@
 //! What acts between and on bodies besides joints: couplers, drivers, forces; and outputs.
 
+use std::slice::from_ref;
+
 use crate::{Motion, Number};
 
 /// One scalar coordinate of a joint.
@@ -183,6 +185,85 @@ pub enum ForceKind {
         /// Frame of force and torque.
         frame: LoadFrame,
     },
+}
+
+/// What can be said of a force whatever its kind is.
+#[derive(Clone, Debug)]
+pub struct ForceParts<'f> {
+    /// The kind's word in the model file.
+    pub word: &'static str,
+    /// The coordinate along which it acts, and what it asks of it; `None` of what acts on points of bodies.
+    pub on: Option<(JointCoordinate, CoordinateUse)>,
+    /// Its numbers by their keys; of an end of a link those of its point.
+    pub numbers: Vec<(&'static str, &'f [Number])>,
+}
+
+impl ForceKind {
+    /// Its parts.
+    pub fn parts(&self) -> ForceParts<'_> {
+        use CoordinateUse::{Rate, Value};
+        let along = ForceParts::along;
+        match self {
+            Self::Spring { on, stiffness, free } => {
+                along("spring", (*on, Value), &[("stiffness", stiffness), ("free", free)])
+            }
+            Self::Damper { on, damping } => along("damper", (*on, Rate), &[("damping", damping)]),
+            Self::Coulomb { on, level, rate } => {
+                along("coulomb", (*on, Rate), &[("level", level), ("rate", rate)])
+            }
+            Self::Stop { on, limit, side: _, stiffness, damping, softness } => along(
+                "stop",
+                (*on, Value),
+                &[("limit", limit), ("stiffness", stiffness), ("damping", damping), ("softness", softness)],
+            ),
+            Self::Motor { on, value } => along("motor", (*on, Rate), &[("value", value)]),
+            Self::Link { first, second, stiffness, damping, free_length } => ForceParts {
+                word: "link",
+                on: None,
+                numbers: vec![
+                    ("first", &first.1[..]),
+                    ("second", &second.1),
+                    ("stiffness", from_ref(stiffness)),
+                    ("damping", from_ref(damping)),
+                    ("free_length", from_ref(free_length)),
+                ],
+            },
+            Self::Load { body: _, point, force, torque, frame: _ } => ForceParts {
+                word: "load",
+                on: None,
+                numbers: vec![("point", &point[..]), ("force", force), ("torque", torque)],
+            },
+        }
+    }
+
+    /// Whether it does work that no potential energy accounts for.
+    pub fn does_work(&self) -> bool {
+        match self {
+            Self::Spring { .. } => false,
+            Self::Link { damping, .. } => !damping.is_zero(),
+            _ => true,
+        }
+    }
+
+    /// The points of bodies at which it acts, each with the index of its body.
+    pub(crate) fn points_mut(&mut self) -> Vec<(usize, &mut [Number; 3])> {
+        match self {
+            Self::Link { first, second, .. } => vec![(first.0, &mut first.1), (second.0, &mut second.1)],
+            Self::Load { body, point, .. } => vec![(*body, point)],
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl<'f> ForceParts<'f> {
+    fn along(
+        word: &'static str,
+        on: (JointCoordinate, CoordinateUse),
+        numbers: &[(&'static str, &'f Number)],
+    ) -> Self {
+        let numbers = numbers.iter().map(|(key, number)| (*key, from_ref(*number))).collect();
+        Self { word, on: Some(on), numbers }
+    }
 }
 
 /// Which side of a limit is blocked.

@@ -29,12 +29,6 @@ pub enum Direction {
     Both,
 }
 
-impl Direction {
-    /// The words of the model file.
-    pub const NAMES: [(&'static str, Self); 3] =
-        [("rising", Self::Rising), ("falling", Self::Falling), ("both", Self::Both)];
-}
-
 impl Event {
     /// Most events of a model.
     pub const MOST: usize = 16;

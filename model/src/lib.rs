@@ -16,6 +16,8 @@ mod directions;
 mod elements;
 mod event;
 mod formula;
+mod joint_kind;
+pub mod keys;
 mod kinematics;
 mod lines;
 mod motion;
@@ -36,11 +38,12 @@ pub use contact::Contact;
 pub use controller::{Controller, Law, Seen};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
-    BodyFrame, CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, JointCoordinate, LoadFrame,
-    Output, OutputKind, StopSide,
+    BodyFrame, CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, ForceParts, JointCoordinate,
+    LoadFrame, Output, OutputKind, StopSide,
 };
 pub use event::{Direction, Event};
 pub use formula::Formula;
+pub use joint_kind::JointKind;
 pub use kinematics::Kinematics;
 pub use lines::Lines;
 pub use motion::{BodyMotion, Motion, Prescribed};
@@ -205,31 +208,6 @@ pub struct Joint {
     pub lead: Number,
     /// Rod: length, m. Zero otherwise.
     pub length: Number,
-}
-
-/// The kinds of joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum JointKind {
-    /// Rotation about one axis: point rows, eq. (7), and two dot-1 rows, eqs. (9) and (10).
-    Revolute,
-    /// Coincident points: eq. (7).
-    Spherical,
-    /// No relative motion: point rows and three dot-1 rows.
-    Fixed,
-    /// Two crossing axes at right angles (Hooke): point rows and `h_i·h_j`.
-    Universal,
-    /// Rotation about and displacement along one axis.
-    Cylindrical,
-    /// Displacement along one axis.
-    Prismatic,
-    /// Two displacements in a plane and rotation about its normal h.
-    Planar,
-    /// Rotation about an axis and displacement along it in a fixed ratio, [`Joint::lead`].
-    Screw,
-    /// The second body's point stays on the first body's axis.
-    PointOnLine,
-    /// Two points at a fixed distance, [`Joint::length`].
-    Rod,
 }
 
 /// A joint as seen from one of its bodies; all vectors are in that body's frame.

@@ -1,6 +1,6 @@
 //! All numbers of a model.
 
-use crate::{ForceKind, Model, Motion, Number, Shape, ShapeKind};
+use crate::{Model, Motion, Number, Shape, ShapeKind};
 
 impl Model {
     /// Every number of the model file that stands in the model, those of the start included.
@@ -29,7 +29,10 @@ impl Model {
         }
         self.couplers.iter().for_each(|coupler| numbers.extend([&coupler.ratio, &coupler.offset]));
         self.drivers.iter().for_each(|driver| driver.motion.add_numbers(&mut numbers));
-        self.forces.iter().for_each(|force| force.kind.add_numbers(&mut numbers));
+        self.forces
+            .iter()
+            .flat_map(|force| force.kind.parts().numbers)
+            .for_each(|(_, of)| numbers.extend(of));
         for frame in self.outputs.iter().filter_map(|output| output.kind.frame()) {
             numbers.extend(frame.point.iter().chain(frame.orientation.iter().flatten()));
         }
@@ -66,27 +69,6 @@ impl Motion {
                 parts.iter().for_each(|part| part.add_numbers(numbers));
             }
             Self::Table(_) | Self::Lines(_) => {}
-        }
-    }
-}
-
-impl ForceKind {
-    fn add_numbers<'m>(&'m self, numbers: &mut Vec<&'m Number>) {
-        match self {
-            Self::Spring { stiffness, free, .. } => numbers.extend([stiffness, free]),
-            Self::Damper { damping, .. } => numbers.push(damping),
-            Self::Coulomb { level, rate, .. } => numbers.extend([level, rate]),
-            Self::Stop { limit, stiffness, damping, softness, .. } => {
-                numbers.extend([limit, stiffness, damping, softness]);
-            }
-            Self::Motor { value, .. } => numbers.push(value),
-            Self::Link { first, second, stiffness, damping, free_length } => {
-                numbers.extend(first.1.iter().chain(&second.1));
-                numbers.extend([stiffness, damping, free_length]);
-            }
-            Self::Load { point, force, torque, .. } => {
-                numbers.extend(point.iter().chain(force).chain(torque));
-            }
         }
     }
 }

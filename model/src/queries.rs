@@ -2,9 +2,8 @@
 
 use crate::redundancy::analyse_with_start;
 use crate::{
-    BodyMotion, CoordinateKind, CoordinateUse, Force, ForceKind, JointCoordinate, JointKind, Lines, Model,
-    Motion, Number, Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start, Support,
-    Tree, to_f64,
+    BodyMotion, CoordinateKind, CoordinateUse, JointCoordinate, JointKind, Lines, Model, Motion, Number,
+    Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start, Support, Tree, to_f64,
 };
 use std::ops::Range;
 
@@ -12,103 +11,6 @@ impl Support {
     /// Whether the body has coordinates of its own.
     pub fn has_coordinates(self) -> bool {
         !matches!(self, Self::Fixed | Self::Driven)
-    }
-}
-
-impl JointKind {
-    /// Units of the joint's rows, in their order: see [`Model::rows`].
-    pub fn row_units(self) -> &'static [RowUnit] {
-        use RowUnit::{Length, Pure};
-        match self {
-            Self::Revolute => &[Length, Length, Length, Pure, Pure],
-            Self::Spherical => &[Length, Length, Length],
-            Self::Fixed => &[Length, Length, Length, Pure, Pure, Pure],
-            Self::Universal => &[Length, Length, Length, Pure],
-            Self::Cylindrical => &[Length, Length, Pure, Pure],
-            Self::Prismatic => &[Length, Length, Pure, Pure, Pure],
-            Self::Planar => &[Length, Pure, Pure],
-            Self::Screw => &[Length, Length, Length, Pure, Pure],
-            Self::PointOnLine => &[Length, Length],
-            Self::Rod => &[Length],
-        }
-    }
-
-    /// The kind's name in the model file.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Revolute => "revolute",
-            Self::Spherical => "spherical",
-            Self::Fixed => "fixed",
-            Self::Universal => "universal",
-            Self::Cylindrical => "cylindrical",
-            Self::Prismatic => "prismatic",
-            Self::Planar => "planar",
-            Self::Screw => "screw",
-            Self::PointOnLine => "point_on_line",
-            Self::Rod => "rod",
-        }
-    }
-
-    /// Whether the joint's one coordinate is its one freedom: then it can have an armature.
-    pub fn turns_one_rotor(self) -> bool {
-        self.coordinates().len() == 1 && self.n_free() == 1
-    }
-
-    /// Number of relative motions that the joint leaves free.
-    pub fn n_free(self) -> usize {
-        6 - self.row_units().len()
-    }
-
-    /// Whether the joint's first three rows say that its points coincide, paper eq. (7).
-    pub fn joins_points(self) -> bool {
-        matches!(self, Self::Revolute | Self::Spherical | Self::Fixed | Self::Universal)
-    }
-
-    /// What the joint's rows are, in their order, as messages write them.
-    pub fn row_symbols(self, axes: PointAxes) -> Vec<&'static str> {
-        let mut symbols = self.global_row_symbols().to_vec();
-        if self.joins_points() && axes == PointAxes::FirstBody {
-            symbols[..3].copy_from_slice(&["f_i.d", "g_i.d", "h_i.d"]);
-        }
-        symbols
-    }
-
-    fn global_row_symbols(self) -> &'static [&'static str] {
-        match self {
-            Self::Revolute => &["d x", "d y", "d z", "f_i.h_j", "g_i.h_j"],
-            Self::Spherical => &["d x", "d y", "d z"],
-            Self::Fixed => &["d x", "d y", "d z", "f_i.h_j", "g_i.h_j", "f_i.g_j"],
-            Self::Universal => &["d x", "d y", "d z", "h_i.h_j"],
-            Self::Cylindrical => &["f_i.d", "g_i.d", "f_i.h_j", "g_i.h_j"],
-            Self::Prismatic => &["f_i.d", "g_i.d", "f_i.h_j", "g_i.h_j", "f_i.g_j"],
-            Self::Planar => &["h_i.d", "f_i.h_j", "g_i.h_j"],
-            Self::Screw => &["f_i.d", "g_i.d", "h_i.d - lead * angle", "f_i.h_j", "g_i.h_j"],
-            Self::PointOnLine => &["f_i.d", "g_i.d"],
-            Self::Rod => &["(d.d / length - length) / 2"],
-        }
-    }
-
-    /// The joint's scalar coordinates. A spherical joint has an orientation instead; fixed joints and rods have none.
-    pub fn coordinates(self) -> &'static [CoordinateKind] {
-        use CoordinateKind::{Angle, Displacement, FirstAngle, SecondAngle, X, Y};
-        match self {
-            Self::Revolute | Self::Screw => &[Angle],
-            Self::Spherical | Self::Fixed | Self::Rod => &[],
-            Self::Universal => &[FirstAngle, SecondAngle],
-            Self::Cylindrical => &[Angle, Displacement],
-            Self::Prismatic | Self::PointOnLine => &[Displacement],
-            Self::Planar => &[X, Y, Angle],
-        }
-    }
-
-    /// Whether the joint can carry a body in a tree: all but a rod.
-    pub fn carries(self) -> bool {
-        self != Self::Rod
-    }
-
-    /// Whether the joint carries a body and its coordinates say how the body is turned.
-    pub(crate) fn turns(self) -> bool {
-        self.carries() && self != Self::PointOnLine
     }
 }
 
@@ -239,13 +141,7 @@ impl Model {
 
     /// What forces, couplers and drivers ask of a joint's coordinates.
     pub fn use_of_coordinates(&self, joint: usize) -> CoordinateUse {
-        let forces = self.forces.iter().filter_map(|force| match force.kind {
-            ForceKind::Spring { on, .. } | ForceKind::Stop { on, .. } => Some((on, CoordinateUse::Value)),
-            ForceKind::Damper { on, .. } | ForceKind::Coulomb { on, .. } | ForceKind::Motor { on, .. } => {
-                Some((on, CoordinateUse::Rate))
-            }
-            ForceKind::Link { .. } | ForceKind::Load { .. } => None,
-        });
+        let forces = self.forces.iter().filter_map(|force| force.kind.parts().on);
         let couplers = self.couplers.iter().flat_map(|coupler| [coupler.first, coupler.second]);
         let prescribed = couplers.chain(self.drivers.iter().map(|driver| driver.coordinate));
         let stopped = self.contacts.iter().map(|contact| (contact.on, CoordinateUse::Value));
@@ -276,11 +172,8 @@ impl Model {
     /// the principal angle.
     pub fn turn_references(&self) -> Vec<JointCoordinate> {
         let mut used = Vec::new();
-        for force in &self.forces {
-            if let ForceKind::Spring { on, .. } | ForceKind::Stop { on, .. } = force.kind {
-                used.push(on);
-            }
-        }
+        let forces = self.forces.iter().filter_map(|force| force.kind.parts().on);
+        used.extend(forces.filter(|(_, of)| *of == CoordinateUse::Value).map(|(on, _)| on));
         used.extend(self.contacts.iter().map(|contact| contact.on));
         used.extend(self.couplers.iter().flat_map(|c| [c.first, c.second]));
         used.extend(self.drivers.iter().map(|d| d.coordinate));
@@ -322,18 +215,9 @@ impl Model {
 
     /// Whether something does work that the energy does not account for, counted or not.
     pub fn is_worked_on(&self) -> bool {
-        let does_work = |force: &Force| match &force.kind {
-            ForceKind::Spring { .. } => false,
-            ForceKind::Link { damping, .. } => !damping.is_zero(),
-            ForceKind::Damper { .. }
-            | ForceKind::Coulomb { .. }
-            | ForceKind::Stop { .. }
-            | ForceKind::Motor { .. }
-            | ForceKind::Load { .. } => true,
-        };
         self.is_driven()
             || self.joints.iter().any(|j| !j.damping.is_zero())
-            || self.forces.iter().any(does_work)
+            || self.forces.iter().any(|force| force.kind.does_work())
     }
 
     /// The rows that are dropped shape the formulas: other parameters must leave them as they are. The start is that

@@ -8,7 +8,7 @@ use crate::model::path::{Path, Wrench};
 use crate::model::place::{Moment, Place, Places, vector};
 use crate::model::scene::Scene;
 use crate::number::Number;
-use gyro_model::{ForceKind, JointCoordinate, JointKind, LoadFrame, Model};
+use gyro_model::{ForceKind, JointKind, LoadFrame, Model};
 use nalgebra::Vector3;
 
 /// One thing that exerts forces.
@@ -54,23 +54,7 @@ impl<T: Number> Element<T> {
 
     fn new(model: &Model, places: &Places<T>, joints: &[Joint<T>], kind: &ForceKind) -> Vec<Self> {
         let amount = |number| Amount::new(model, number);
-        let along = |on: &JointCoordinate, law| {
-            let path = Path::Coordinate(Coordinate::of(&joints[on.joint], on.coordinate));
-            vec![Self::Along { path, law }]
-        };
         match kind {
-            ForceKind::Spring { on, stiffness, free } => {
-                along(on, Law::Spring { stiffness: amount(stiffness), free: amount(free) })
-            }
-            ForceKind::Damper { on, damping } => along(on, Law::Damper { damping: amount(damping) }),
-            ForceKind::Coulomb { on, level, rate } => {
-                along(on, Law::Coulomb { level: amount(level), rate: amount(rate) })
-            }
-            ForceKind::Stop { on, limit, side, stiffness, damping, softness } => {
-                let [limit, stiffness, damping, softness] = [limit, stiffness, damping, softness].map(amount);
-                along(on, Law::Stop { limit, side: *side, stiffness, damping, softness })
-            }
-            ForceKind::Motor { on, value } => along(on, Law::Motor { value: amount(value) }),
             ForceKind::Link { first, second, stiffness, damping, free_length } => {
                 let end = |(body, point): &(usize, _)| (places.of(*body), vector(model.values(point)));
                 let path = Path::Line([end(first), end(second)]);
@@ -87,6 +71,13 @@ impl<T: Number> Element<T> {
                 torque: torque.each_ref().map(amount),
                 frame: *frame,
             }],
+            kind => {
+                let along = kind.parts().on.zip(Law::of(model, kind)).map(|((on, _), law)| {
+                    let path = Path::Coordinate(Coordinate::of(&joints[on.joint], on.coordinate));
+                    Self::Along { path, law }
+                });
+                along.into_iter().collect()
+            }
         }
     }
 

@@ -1,7 +1,7 @@
 //! Laws of force along a coordinate: [`gyro_model::ForceKind`].
 
 use crate::number::{Number, number, sqrt, tanh};
-use gyro_model::{Model, Number as PageNumber, StopSide};
+use gyro_model::{ForceKind, Model, Number as PageNumber, StopSide};
 
 /// A number of a force: folded, or an input that the caller sets.
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +48,26 @@ impl<T: Number> Amount<T> {
 }
 
 impl<T: Number> Law<T> {
+    /// The law of a force along a joint coordinate; `None` of others.
+    pub(crate) fn of(model: &Model, kind: &ForceKind) -> Option<Self> {
+        let amount = |number| Amount::new(model, number);
+        Some(match kind {
+            ForceKind::Spring { on: _, stiffness, free } => {
+                Self::Spring { stiffness: amount(stiffness), free: amount(free) }
+            }
+            ForceKind::Damper { on: _, damping } => Self::Damper { damping: amount(damping) },
+            ForceKind::Coulomb { on: _, level, rate } => {
+                Self::Coulomb { level: amount(level), rate: amount(rate) }
+            }
+            ForceKind::Stop { on: _, limit, side, stiffness, damping, softness } => {
+                let [limit, stiffness, damping, softness] = [limit, stiffness, damping, softness].map(amount);
+                Self::Stop { limit, side: *side, stiffness, damping, softness }
+            }
+            ForceKind::Motor { on: _, value } => Self::Motor { value: amount(value) },
+            ForceKind::Link { .. } | ForceKind::Load { .. } => return None,
+        })
+    }
+
     /// Whether the force is minus the slope of [`Law::potential`].
     pub(crate) fn is_conservative(&self) -> bool {
         matches!(self, Self::Spring { .. })

@@ -15,23 +15,14 @@ pub(super) fn efforts(model: &Model) -> Vec<Effort> {
 }
 
 fn along(model: &Model, kind: &ForceKind) -> Option<Effort> {
-    Some(match kind {
-        ForceKind::Spring { on, stiffness, free } => {
-            effort(model, *on, "spring", &[("stiffness", stiffness), ("free", free)])
-        }
-        ForceKind::Damper { on, damping } => effort(model, *on, "damper", &[("damping", damping)]),
-        ForceKind::Coulomb { on, level, rate } => {
-            effort(model, *on, "coulomb", &[("level", level), ("rate", rate)])
-        }
-        ForceKind::Stop { on, limit, side, stiffness, damping, softness } => {
-            let law = if *side == StopSide::Lower { "lower" } else { "upper" };
-            let numbers =
-                [("limit", limit), ("stiffness", stiffness), ("damping", damping), ("softness", softness)];
-            effort(model, *on, law, &numbers)
-        }
-        ForceKind::Motor { on, value } => effort(model, *on, "motor", &[("value", value)]),
-        ForceKind::Link { .. } | ForceKind::Load { .. } => return None,
-    })
+    let parts = kind.parts();
+    let law = match kind {
+        ForceKind::Stop { side: StopSide::Lower, .. } => "lower",
+        ForceKind::Stop { side: StopSide::Upper, .. } => "upper",
+        _ => parts.word,
+    };
+    let numbers: Vec<_> = parts.numbers.iter().map(|(name, numbers)| (*name, &numbers[0])).collect();
+    parts.on.map(|(on, _)| effort(model, on, law, &numbers))
 }
 
 fn effort(

@@ -11,7 +11,7 @@ use super::embedding::Embedding;
 use super::layout::Layout;
 use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
-use gyro_model::ForceKind;
+use gyro_model::CoordinateUse;
 
 /// The unit of a coordinate that a spring holds. On a four-bar linkage with a bushing, at a tolerance of 1e-6, `rodas4`
 /// is then as good as without closing up to 1e7 N·m/rad, and a soft spring on any joint makes no difference; from 1/100
@@ -27,7 +27,7 @@ pub fn units(system: &mut System, layout: &Layout, by_rates: &Embedding) -> Vec<
         return units;
     }
     for force in &system.model.forces {
-        let (ForceKind::Spring { on, .. } | ForceKind::Stop { on, .. }) = force.kind else { continue };
+        let Some((on, CoordinateUse::Value)) = force.kind.parts().on else { continue };
         let Some(scalar) = layout.scalar(on) else { continue };
         for (rate, _) in &by_rates.rates[scalar.place.u].columns {
             units[*rate] = held;

@@ -130,10 +130,11 @@ impl<'m> Walk<'m> {
                     if hanging.reversed { child.conjugate() * parent } else { parent.conjugate() * child }
                 });
             }
-            JointKind::Revolute | JointKind::Screw | JointKind::Cylindrical => turn(0),
-            JointKind::Planar => turn(2),
             JointKind::Universal => turn(0) * CROSSED * turn(1),
-            JointKind::Fixed | JointKind::Prismatic | JointKind::Rod => Quaternion::about_z(0.0),
+            kind => {
+                let angle = kind.coordinates().iter().position(|of| *of == CoordinateKind::Angle);
+                angle.map_or(Quaternion::about_z(0.0), turn)
+            }
         };
         joint.first.frame() * between * joint.second.frame().conjugate()
     }

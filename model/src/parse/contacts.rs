@@ -1,51 +1,20 @@
 //! Rigid stops and friction that sticks.
 
 use num_traits::Zero;
-use toml::de::DeTable;
 
-use super::couplings::NO_COORDINATE;
-use super::numbers::number;
 use super::reader::Reader;
+use super::references::{self, NO_COORDINATE};
 use super::section::{Section, keyword};
-use super::{names, parameters, references, tables};
+use super::{names, parameters, tables};
 use crate::diagnostics::Related;
 use crate::validate::{Owner, Place};
 use crate::{Contact, Force, ForceKind, Joint, Number, Output, OutputKind, Parameter, Rational};
 
-const KEYS: [&str; 11] = [
-    "name",
-    "joint",
-    "coordinate",
-    "lower",
-    "upper",
-    "restitution",
-    "friction",
-    "static_friction",
-    "friction_coefficient",
-    "static_friction_coefficient",
-    "radius",
-];
-
 /// Reads all contacts; their inputs come after so many others.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, n_inputs: usize) -> Vec<Contact> {
-    let tables = tables::tables(reader, page, "contact");
-    let names = tables::names(reader, &tables, Owner::Contact, "contact");
-    if let Some((span, _)) = tables.get(Contact::MOST) {
-        let words = [
-            format!("a model has at most {} contacts", Contact::MOST),
-            format!("there are {}", tables.len()),
-            "leave some out, or write them as [[force]] of kind \"stop\" and \"coulomb\", which are smooth"
-                .to_owned(),
-        ];
-        reader.wrong(Place { owner: Owner::Contact(Contact::MOST), key: "" }, span.clone(), words);
-    }
-    let named = tables.iter().zip(names).enumerate();
-    let contacts: Vec<Contact> = named
-        .map(|(index, ((_, table), name))| {
-            let name = name.unwrap_or_else(|| format!("contact {}", index + 1));
-            contact(reader, (index, table), name, n_inputs + index)
-        })
-        .collect();
+    let sections = tables::each(reader, page, "contact", Owner::Contact).into_iter().enumerate();
+    let contacts: Vec<Contact> =
+        sections.map(|(index, (section, name))| contact(reader, &section, name, n_inputs + index)).collect();
     for (index, contact) in contacts.iter().enumerate() {
         unlike_inputs(reader, index, contact);
         shared(reader, &contacts[..index], index, contact);
@@ -53,43 +22,34 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, n_inputs: usize)
     contacts
 }
 
-fn contact(
-    reader: &mut Reader<'_>,
-    (index, table): (usize, &DeTable<'_>),
-    name: String,
-    input: usize,
-) -> Contact {
-    let title = format!("contact `{name}`");
-    let section = Section::open(reader, Owner::Contact(index), &title, table, &KEYS);
-    let on = references::coordinate(reader, &section, &title).unwrap_or(NO_COORDINATE);
-    let ends = ["lower", "upper"].map(|key| section.get(key).and_then(|item| number(reader, item)));
+fn contact(reader: &mut Reader<'_>, section: &Section<'_>, name: String, input: usize) -> Contact {
+    const LEVELS: [&str; 2] = ["friction", "static_friction"];
+    const COEFFICIENTS: [&str; 2] = ["friction_coefficient", "static_friction_coefficient"];
+    let on = references::coordinate(reader, section);
+    let ends = ["lower", "upper"].map(|key| section.given(reader, key));
     let has_stops = section.has("lower") || section.has("upper");
-    if !has_stops && !KEYS[6..10].iter().any(|key| section.has(key)) {
-        let example = "upper = ..., in rad or m, lower = ..., friction = ..., in N.m or N, or friction_coefficient = ...";
-        section.require(reader, "upper", &title, example);
+    if !has_stops && !LEVELS.iter().chain(&COEFFICIENTS).any(|key| section.has(key)) {
+        section.require(reader, "upper");
     }
     if has_stops {
-        let example = "restitution = ..., from 0 to 1: the part of its rate with which the joint rebounds";
-        section.require(reader, "restitution", &title, example);
+        section.require(reader, "restitution");
     } else {
         let help = "remove it, or add lower = ... or upper = ..., in rad or m";
-        section.refuse(reader, "restitution", &format!("{title} has no stop to rebound from"), help);
+        let message = format!("{} has no stop to rebound from", section.title);
+        section.refuse(reader, "restitution", &message, help);
     }
-    let mut pair = |[moving, resting]: [&'static str; 2]| {
-        let kinetic = section.number_or(reader, moving, 0);
-        let at_rest = section.get(resting).and_then(|item| number(reader, item));
-        [kinetic.clone(), at_rest.unwrap_or(kinetic)]
-    };
-    let levels = pair(["friction", "static_friction"]);
-    let coefficients = pair(["friction_coefficient", "static_friction_coefficient"]);
+    let [levels, coefficients] = [LEVELS, COEFFICIENTS].map(|[moving, resting]| {
+        let kinetic = section.number(reader, moving);
+        [kinetic.clone(), section.given(reader, resting).unwrap_or(kinetic)]
+    });
     Contact {
         name,
         on,
         ends,
-        restitution: section.number_or(reader, "restitution", 0),
+        restitution: section.number(reader, "restitution"),
         levels,
         coefficients,
-        radius: section.get("radius").and_then(|item| number(reader, item)),
+        radius: section.given(reader, "radius"),
         reaction: None,
         input,
     }

@@ -1,113 +1,41 @@
 //! Sampled controllers.
 
 use num_traits::{One, Signed, ToPrimitive, Zero};
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 use super::names;
-use super::numbers::{number, numbers, plain_number};
+use super::numbers::numbers;
 use super::reader::Reader;
-use super::section::{self, Item, Section};
+use super::section::{Item, Section, all};
 use super::seen::{self, Known};
 use super::tables;
 use crate::diagnostics::Related;
 use crate::validate::{Owner, Place, rounded};
-use crate::{Controller, Law, Number, Output, Rational, Seen};
-
-const KEYS: [&str; 17] = [
-    "name",
-    "kind",
-    "outputs",
-    "inputs",
-    "frequency_hz",
-    "period",
-    "delay",
-    "setpoint",
-    "limits",
-    "output_step",
-    "input_step",
-    "kp",
-    "ki",
-    "kd",
-    "gains",
-    "numerator",
-    "denominator",
-];
-
-/// Keys of all kinds.
-macro_rules! with_common {
-    ($($own:literal),*) => {
-        &[
-            "outputs", "inputs", "frequency_hz", "period", "delay", "setpoint", "limits", "output_step",
-            "input_step", $($own),*
-        ]
-    };
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Pid,
-    StateFeedback,
-    TransferFunction,
-}
-
-const KINDS: [(&str, Kind); 3] = [
-    ("pid", Kind::Pid),
-    ("state_feedback", Kind::StateFeedback),
-    ("transfer_function", Kind::TransferFunction),
-];
-
-const KINDS_KEYS: section::Kinds<'static> = &[
-    ("pid", with_common!("kp", "ki", "kd")),
-    ("state_feedback", with_common!("gains")),
-    ("transfer_function", with_common!("numerator", "denominator")),
-];
+use crate::{Controller, Law, Number, Output, Rational};
 
 /// Reads all controllers.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, outputs: &[Output]) -> Vec<Controller> {
-    let tables = tables::tables(reader, page, "controller");
-    let names = tables::names(reader, &tables, Owner::Controller, "controller");
-    let known = seen::known(&reader.joints, outputs);
-    let named = tables.iter().zip(names).enumerate();
-    let controllers: Vec<Controller> = named
-        .map(|(index, ((_, table), name))| {
-            let name = name.unwrap_or_else(|| format!("controller {}", index + 1));
-            controller(reader, (index, table), &known, name)
-        })
-        .collect();
+    let known = seen::known(reader, outputs);
+    let sections = tables::each(reader, page, "controller", Owner::Controller).into_iter();
+    let controllers: Vec<Controller> =
+        sections.map(|(section, name)| controller(reader, section, &known, name)).collect();
     shared(reader, &controllers);
     controllers
 }
 
-fn controller(
-    reader: &mut Reader<'_>,
-    (index, table): (usize, &DeTable<'_>),
-    known: &Known,
-    name: String,
-) -> Controller {
-    let title = format!("controller `{name}`");
-    let section = Section::open(reader, Owner::Controller(index), &title, table, &KEYS);
-    let kind = section.require_choice(reader, "kind", &title, ("kind of controller", &KINDS));
-    if let Some((word, _)) = KINDS.iter().find(|(_, other)| Some(*other) == kind) {
-        section::refuse_others(reader, &section, &KEYS, (word, KINDS_KEYS));
-    }
-    let example = "outputs = [\"...\"]: joint coordinates, their rates, numbers of outputs";
-    let outputs = section.require(reader, "outputs", &title, example);
-    let outputs: Option<Vec<Seen>> = outputs.and_then(|item| {
-        let all = words(reader, item)?.into_iter().map(|(item, word)| seen::named(reader, item, word, known));
-        all.collect::<Vec<_>>().into_iter().collect()
-    });
-    let example = "inputs = [\"...\"], names of [inputs]";
-    let inputs = section.require(reader, "inputs", &title, example);
-    let inputs: Option<Vec<usize>> = inputs.and_then(|item| {
-        let all = words(reader, item)?.into_iter().map(|(item, word)| input(reader, item, word));
-        all.collect::<Vec<_>>().into_iter().collect()
-    });
+fn controller(reader: &mut Reader<'_>, mut section: Section<'_>, known: &Known, name: String) -> Controller {
+    let kind = section.read_kind(reader, |_, _| None);
+    let outputs =
+        words(reader, &section, "outputs", |reader, item, word| seen::named(reader, item, word, known));
+    let inputs = words(reader, &section, "inputs", input);
     let sizes = outputs.as_ref().map(Vec::len).zip(inputs.as_ref().map(Vec::len));
     let n_outputs = sizes.map_or(1, |sizes| sizes.0);
-    let law = law(reader, &section, &title, (kind, sizes));
-    let period = period(reader, &section, &title);
-    let [setpoints, output_steps] =
-        ["setpoint", "output_step"].map(|key| each(reader, &section, key, n_outputs));
+    let law = law(reader, &section, (kind.map(|kind| kind.word), sizes));
+    let period = period(reader, &section);
+    let [setpoints, output_steps] = ["setpoint", "output_step"].map(|key| {
+        let given = section.each(reader, key, n_outputs);
+        given.unwrap_or_else(|| vec![Number::integer(0); n_outputs])
+    });
     Controller {
         law,
         outputs: outputs.unwrap_or_default(),
@@ -115,37 +43,29 @@ fn controller(
         delay: delay(reader, &section, period.as_ref()),
         period: period.as_ref().and_then(fraction).unwrap_or([1, 1]),
         setpoints,
-        limits: section
-            .get("limits")
-            .and_then(|item| numbers(reader, item, 2))
-            .and_then(|l| l.try_into().ok()),
+        limits: section.given_vector(reader, "limits"),
         output_steps,
-        input_step: section.number_or(reader, "input_step", 0),
+        input_step: section.number(reader, "input_step"),
         name,
     }
 }
 
-/// An array of names.
-fn words<'t>(reader: &mut Reader<'_>, item: Item<'t>) -> Option<Vec<(Item<'t>, &'t str)>> {
-    let key = item.key();
-    let elements = item.value.get_ref().as_array();
-    let words = elements.and_then(|elements| {
-        let word = |value| Some((Item { value, ..item }, value.get_ref().as_str()?));
-        elements.iter().map(word).collect::<Option<Vec<_>>>()
-    });
-    let Some(words) = words else {
-        item.wrong_type(reader, "an array of names", &format!("{key} = [\"...\"]"));
-        return None;
-    };
+/// What each name of an array means.
+fn words<T>(
+    reader: &mut Reader<'_>,
+    section: &Section<'_>,
+    key: &'static str,
+    meaning: impl Fn(&mut Reader<'_>, Item<'_>, &str) -> Option<T>,
+) -> Option<Vec<T>> {
+    let item = section.find(reader, key)?;
+    let words = item.texts(reader, "an array of names")?;
     if !(1..=Controller::MOST).contains(&words.len()) {
         let help = format!("write one to {} names", Controller::MOST);
-        item.wrong(
-            reader,
-            [format!("a controller with {} {key}", words.len()), format!("found {}", words.len()), help],
-        );
+        let message = format!("a controller with {} {key}", words.len());
+        item.wrong(reader, [message, format!("found {}", words.len()), help]);
         return None;
     }
-    Some(words)
+    all(words.into_iter().map(|(item, word)| meaning(reader, item, word)))
 }
 
 fn input(reader: &mut Reader<'_>, item: Item<'_>, word: &str) -> Option<usize> {
@@ -190,27 +110,27 @@ fn shared(reader: &mut Reader<'_>, controllers: &[Controller]) {
 fn law(
     reader: &mut Reader<'_>,
     section: &Section<'_>,
-    title: &str,
-    (kind, sizes): (Option<Kind>, Option<(usize, usize)>),
+    (kind, sizes): (Option<&str>, Option<(usize, usize)>),
 ) -> Law {
     match kind {
-        Some(Kind::StateFeedback) => Law::StateFeedback { gains: gains(reader, section, title, sizes) },
-        Some(Kind::TransferFunction) => {
+        Some("state_feedback") => Law::StateFeedback { gains: gains(reader, section, sizes) },
+        Some("transfer_function") => {
             single(reader, section, "transfer function", sizes);
             let [numerator, denominator] = ["numerator", "denominator"].map(|key| {
-                let item = section.require(reader, key, title, &format!("{key} = [...], powers of 1/z"));
+                let item = section.find(reader, key);
                 item.and_then(|item| coefficients(reader, item)).unwrap_or_else(|| vec![Number::integer(1)])
             });
             Law::TransferFunction { numerator, denominator }
         }
         _ => {
+            const GAINS: [&str; 3] = ["kp", "ki", "kd"];
             if kind.is_some() {
                 single(reader, section, "PID law", sizes);
-                if !["kp", "ki", "kd"].iter().any(|key| section.has(key)) {
-                    section.require(reader, "kp", title, "kp = ..., and ki and kd as far as they are not 0");
+                if !GAINS.iter().any(|key| section.has(key)) {
+                    section.require(reader, "kp");
                 }
             }
-            Law::Pid { gains: ["kp", "ki", "kd"].map(|key| section.number_or(reader, key, 0)) }
+            Law::Pid { gains: GAINS.map(|key| section.number(reader, key)) }
         }
     }
 }
@@ -227,14 +147,8 @@ fn single(reader: &mut Reader<'_>, section: &Section<'_>, what: &str, sizes: Opt
     }
 }
 
-fn gains(
-    reader: &mut Reader<'_>,
-    section: &Section<'_>,
-    title: &str,
-    sizes: Option<(usize, usize)>,
-) -> Vec<Vec<Number>> {
-    let example = "gains = [[...]]: a row for each input, in it a number for each output";
-    let item = section.require(reader, "gains", title, example);
+fn gains(reader: &mut Reader<'_>, section: &Section<'_>, sizes: Option<(usize, usize)>) -> Vec<Vec<Number>> {
+    let item = section.find(reader, "gains");
     let (Some(item), Some((n_outputs, n_inputs))) = (item, sizes) else { return Vec::new() };
     let rows = item.value.get_ref().as_array().filter(|rows| rows.len() == n_inputs);
     let is_row = |value: &DeValue<'_>| value.as_array().is_some_and(|row| row.len() == n_outputs);
@@ -257,35 +171,18 @@ fn coefficients(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Vec<Number>> 
         return numbers(reader, item, length);
     }
     let what = format!("an array of 1 to {} numbers, powers of 1/z", Controller::MOST + 1);
-    item.wrong_type(reader, &what, &format!("{} = [1, -0.5]", item.key()));
+    item.wrong_type_with(reader, &what, format!("write {} = [1, -0.5]", item.key.name));
     None
 }
 
-/// A number for each output: one for all, or an array; zero unless given.
-fn each(reader: &mut Reader<'_>, section: &Section<'_>, key: &'static str, n_outputs: usize) -> Vec<Number> {
-    let found = section.get(key).and_then(|item| match item.value.get_ref() {
-        DeValue::Array(_) => numbers(reader, item, n_outputs),
-        _ => number(reader, item).map(|one| vec![one; n_outputs]),
-    });
-    found.unwrap_or_else(|| vec![Number::integer(0); n_outputs])
-}
-
 /// The period, s, from itself or from a frequency.
-fn period(reader: &mut Reader<'_>, section: &Section<'_>, title: &str) -> Option<Rational> {
-    if section.has("period") {
-        let help = "remove one of the two: a period is one over a frequency";
-        section.refuse(reader, "frequency_hz", &format!("{title} has a frequency and a period"), help);
-    }
-    let key = if section.has("period") { "period" } else { "frequency_hz" };
-    let item = section.require(reader, key, title, "frequency_hz = 1000, or period = 0.001")?;
-    let value = plain_number(reader, item)?;
-    if !value.is_positive() {
-        let unit = if key == "period" { "s" } else { "Hz" };
-        let label = format!("{} {unit}", crate::to_f64(&value));
-        let help = format!("write a {} greater than 0", if key == "period" { "time" } else { "frequency" });
-        item.wrong(reader, [format!("the `{key}` of {title} is not positive"), label, help]);
-        return None;
-    }
+fn period(reader: &mut Reader<'_>, section: &Section<'_>) -> Option<Rational> {
+    let title = &section.title;
+    let twice = format!("{title} has a frequency and a period");
+    let item = section.either(reader, ["period", "frequency_hz"], &twice);
+    let item = item.or_else(|| section.require(reader, "frequency_hz"))?;
+    let key = item.key.name;
+    let value = section.plain(reader, key)?;
     let period = if key == "period" { value } else { Rational::one() / value };
     if fraction(&period).is_none() {
         let help = "write it with fewer digits, or as a fraction such as \"1/3000\"".to_owned();
@@ -303,8 +200,8 @@ fn fraction(period: &Rational) -> Option<[u64; 2]> {
 }
 
 fn delay(reader: &mut Reader<'_>, section: &Section<'_>, period: Option<&Rational>) -> Rational {
-    let Some(item) = section.get("delay") else { return Rational::zero() };
-    let Some(delay) = plain_number(reader, item) else { return Rational::zero() };
+    let item = section.get("delay").zip(section.plain(reader, "delay"));
+    let Some((item, delay)) = item else { return Rational::zero() };
     let longest = period.cloned().unwrap_or_else(|| delay.abs());
     if delay.is_negative() || delay > &longest * (Rational::one() + rounded()) {
         let label = format!("{} s", crate::to_f64(&delay));

@@ -1,52 +1,25 @@
 //! Events.
 
-use toml::de::DeTable;
-
 use super::formulas::Named;
 use super::numbers::{named, wrong_within};
 use super::reader::Reader;
 use super::section::{Item, Section};
 use super::seen::{self, Known};
 use super::tables;
-use crate::validate::{Owner, Place};
+use crate::validate::Owner;
 use crate::{Direction, Event, Formula, Number, Output};
-
-const KEYS: [&str; 6] = ["name", "of", "minus", "level", "direction", "stop"];
 
 /// Reads all events.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, outputs: &[Output]) -> Vec<Event> {
-    let tables = tables::tables(reader, page, "event");
-    let names = tables::names(reader, &tables, Owner::Event, "event");
-    if let Some((span, _)) = tables.get(Event::MOST) {
-        let words = [
-            format!("a model has at most {} events", Event::MOST),
-            format!("there are {}", tables.len()),
-            "leave some out, or look for them in the table of the run".to_owned(),
-        ];
-        reader.wrong(Place { owner: Owner::Event(Event::MOST), key: "" }, span.clone(), words);
-    }
-    let known = seen::known(&reader.joints, outputs);
-    let named = tables.iter().zip(names).enumerate();
-    named
-        .map(|(index, ((_, table), name))| {
-            event(reader, (index, table), &known, name.unwrap_or_else(|| format!("event {}", index + 1)))
-        })
-        .collect()
+    let known = seen::known(reader, outputs);
+    let sections = tables::each(reader, page, "event", Owner::Event).into_iter();
+    sections.map(|(section, name)| event(reader, &section, &known, name)).collect()
 }
 
-fn event(
-    reader: &mut Reader<'_>,
-    (index, table): (usize, &DeTable<'_>),
-    known: &Known,
-    name: String,
-) -> Event {
-    let title = format!("event `{name}`");
-    let section = Section::open(reader, Owner::Event(index), &title, table, &KEYS);
-    let example = "of = \"...\": a joint coordinate, a rate (\"joint rate\"), or a number of an output";
-    section.require(reader, "of", &title, example);
+fn event(reader: &mut Reader<'_>, section: &Section<'_>, known: &Known, name: String) -> Event {
     let [of, minus] = ["of", "minus"].map(|key| {
-        let item = section.get(key)?;
-        let word = item.text(reader, &format!("{key} = \"...\", the name of a column of a run's table"))?;
+        let item = section.find(reader, key)?;
+        let word = item.text(reader)?;
         formula(reader, item, word, known)
     });
     let of = of.unwrap_or(Formula::Number(Number::integer(0)));
@@ -54,16 +27,16 @@ fn event(
         None => of,
         Some(minus) => Formula::Difference(Box::new([of, minus])),
     };
-    let direction = section.get("direction").and_then(|item| {
-        let known = Direction::NAMES;
-        item.choice(reader, ("direction", &known))
-    });
     Event {
         name,
         of,
-        level: section.number_or(reader, "level", 0),
-        direction: direction.unwrap_or_default(),
-        stops: section.get("stop").and_then(|item| item.flag(reader)).unwrap_or(false),
+        level: section.number(reader, "level"),
+        direction: match section.word(reader, "direction") {
+            Some("rising") => Direction::Rising,
+            Some("falling") => Direction::Falling,
+            _ => Direction::Both,
+        },
+        stops: section.flag(reader, "stop"),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The start of a joint: values of its coordinates, its rates, and whether they are guesses.
 
 use super::kinds::start_keys;
-use super::numbers::{number, numbers, plain_number, radians, vector};
+use super::numbers::{number, numbers, radians};
 use super::reader::Reader;
 use super::section::Section;
 use crate::{CoordinateKind, JointKind, JointStartSpec, Number};
@@ -14,12 +14,11 @@ pub(super) fn read(
 ) -> JointStartSpec {
     let Some(kind) = kind else { return JointStartSpec::default() };
     let position = kind.coordinates().iter().map(|&coordinate| value(reader, section, coordinate)).collect();
-    let is_rough = section.get("rough").and_then(|item| item.flag(reader));
     JointStartSpec {
         position,
         rate: rate(reader, section, kind),
-        orientation: section.get("orientation").and_then(|item| vector(reader, item)),
-        is_rough: is_rough.unwrap_or(false),
+        orientation: section.given_vector(reader, "orientation"),
+        is_rough: section.flag(reader, "rough"),
         set: Vec::new(),
     }
 }
@@ -27,14 +26,10 @@ pub(super) fn read(
 /// The value at which a coordinate starts; an angle may be in degrees.
 fn value(reader: &mut Reader<'_>, section: &Section<'_>, coordinate: CoordinateKind) -> Option<Number> {
     let (plain, degrees) = start_keys(coordinate);
-    let given = section.get(plain).and_then(|item| number(reader, item));
-    let Some(degrees) = degrees else { return given };
-    if section.has(plain) {
-        let help = format!("remove `{plain}` or `{degrees}`");
-        section.refuse(reader, degrees, &format!("the {} is given twice", plain.replace('_', " ")), &help);
-    }
-    let in_degrees = section.get(degrees).and_then(|item| plain_number(reader, item));
-    given.or(in_degrees.map(radians))
+    let Some(degrees) = degrees else { return section.given(reader, plain) };
+    section.either(reader, [plain, degrees], &format!("the {} is given twice", plain.replace('_', " ")))?;
+    let given = section.given(reader, plain);
+    given.or(section.plain(reader, degrees).map(radians))
 }
 
 /// One number of a joint with one coordinate, a list of the others'; three of a spherical joint.

@@ -1,134 +1,75 @@
 //! Joints: their kind, where they are on each of their bodies, and the numbers of their kind.
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
-use super::kinds::{self, KINDS};
-use super::numbers::{number, per_turn, plain_number};
-use super::reader::{NamedJoint, Reader};
+use super::kinds;
+use super::numbers::per_turn;
+use super::reader::Reader;
 use super::section::Section;
 use super::{joint_start, references, tables};
-use crate::validate::{Owner, Place, Side};
+use crate::validate::{Owner, Side};
 use crate::{Joint, JointEnd, JointKind, Number};
 
-const KEYS: [&str; 24] = [
-    "name",
-    "kind",
-    "first",
-    "second",
-    "point",
-    "axis",
-    "zero",
-    "damping",
-    "armature",
-    "lead",
-    "pitch",
-    "length",
-    "angle",
-    "angle_deg",
-    "first_angle",
-    "first_angle_deg",
-    "second_angle",
-    "second_angle_deg",
-    "displacement",
-    "x",
-    "y",
-    "orientation",
-    "rate",
-    "rough",
-];
-const END_KEYS: [&str; 4] = ["body", "point", "axis", "zero"];
-
-/// Reads all joints. Their names and kinds are with the reader before anything refers to them.
+/// Reads all joints. Their kinds are with the reader before anything refers to them.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Joint> {
-    let tables = tables::tables(reader, page, "joint");
-    let names = tables::names(reader, &tables, Owner::Joint, "joint");
-    let mut joints = Vec::new();
-    for (index, ((_, table), name)) in tables.iter().zip(names).enumerate() {
-        let title = name.clone().unwrap_or_else(|| format!("joint {}", index + 1));
-        let (joint, kind) = joint(reader, index, table, title);
-        joints.push(joint);
-        reader.joints.push(NamedJoint { name, kind });
-    }
-    joints
+    let sections = tables::each(reader, page, "joint", Owner::Joint).into_iter().enumerate();
+    sections.map(|(index, (section, name))| joint(reader, (index, section), name)).collect()
 }
 
-fn joint(
-    reader: &mut Reader<'_>,
-    index: usize,
-    table: &DeTable<'_>,
-    name: String,
-) -> (Joint, Option<JointKind>) {
-    let title = format!("joint `{name}`");
-    let section = Section::open(reader, Owner::Joint(index), &title, table, &KEYS);
-    let kind = section.require_choice(reader, "kind", &title, ("kind of joint", &KINDS));
+fn joint(reader: &mut Reader<'_>, (index, mut section): (usize, Section<'_>), name: String) -> Joint {
+    let kind = section.read_kind(reader, kinds::cure).and_then(|kind| JointKind::named(kind.word));
+    reader.joint_kinds.push(kind);
     if let Some(kind) = kind {
-        kinds::refuse_misplaced(reader, &section, kind);
-        require_directions(reader, &section, &title, kind);
+        require_directions(reader, &section, kind);
     }
-    let shared = Shared { section, title: &title, index, kind };
+    let shared = Shared { section, index, kind };
     let [first, second] = Side::BOTH.map(|side| end(reader, &shared, side));
-    let joint = Joint {
+    let Shared { section, .. } = shared;
+    Joint {
         kind: kind.unwrap_or(JointKind::Fixed),
         first,
         second,
-        damping: section.number_or(reader, "damping", 0),
-        armature: section.number_or(reader, "armature", 0),
+        damping: section.number(reader, "damping"),
+        armature: section.number(reader, "armature"),
         start: joint_start::read(reader, &section, kind),
-        lead: lead(reader, &shared),
-        length: length(reader, &shared),
+        lead: if kind == Some(JointKind::Screw) { lead(reader, &section) } else { Number::integer(0) },
+        length: if kind == Some(JointKind::Rod) {
+            section.number(reader, "length")
+        } else {
+            Number::integer(0)
+        },
         name,
-    };
-    (joint, kind)
+    }
 }
 
-/// Advance of a screw, m/rad, from `lead` or from `pitch`, in m a turn.
-fn lead(reader: &mut Reader<'_>, joint: &Shared<'_, '_>) -> Number {
-    let section = &joint.section;
-    if section.has("lead") {
-        section.refuse(
-            reader,
-            "pitch",
-            "the advance of the screw is given twice",
-            "remove `lead` or `pitch`",
-        );
+/// Advance of a screw, m/rad, from `lead` or from `pitch`, in m a turn; one, which is never refused, where it is wrong.
+fn lead(reader: &mut Reader<'_>, section: &Section<'_>) -> Number {
+    let item = section.either(reader, ["lead", "pitch"], "the advance of the screw is given twice");
+    if item.is_none() {
+        section.require(reader, "lead");
     }
-    let lead = section.get("lead").and_then(|item| number(reader, item));
-    let pitch = section.get("pitch").and_then(|item| plain_number(reader, item)).map(per_turn);
-    let is_given = section.has("lead") || section.has("pitch");
-    if joint.kind == Some(JointKind::Screw) && !is_given {
-        let example = "lead = ..., in m/rad, or pitch = ..., in m a turn";
-        section.require(reader, "lead", joint.title, example);
-    }
-    lead.or(pitch).unwrap_or_else(|| Number::integer(i64::from(is_given)))
-}
-
-/// Length of a rod, m.
-fn length(reader: &mut Reader<'_>, joint: &Shared<'_, '_>) -> Number {
-    if joint.kind != Some(JointKind::Rod) {
-        return Number::integer(0);
-    }
-    let item = joint.section.require(reader, "length", joint.title, "length = ..., in m");
-    item.and_then(|item| number(reader, item)).unwrap_or_else(|| Number::integer(1))
+    let pitch = if section.has("lead") { None } else { section.plain(reader, "pitch") };
+    let lead = section.given(reader, "lead").or(pitch.map(per_turn));
+    lead.unwrap_or_else(|| Number::integer(1))
 }
 
 /// Each side on which the kind measures directions has them, or they are in the joint, for both.
-fn require_directions(reader: &mut Reader<'_>, section: &Section<'_>, title: &str, kind: JointKind) {
+fn require_directions(reader: &mut Reader<'_>, section: &Section<'_>, kind: JointKind) {
     let sides = kinds::directed_sides(kind);
     if !sides.is_empty() {
-        require_direction(reader, section, title, ("axis", "the joint's axis", sides));
+        require_direction(reader, section, ("axis", "the joint's axis", sides));
         let meaning = match kind {
             JointKind::Prismatic | JointKind::PointOnLine => "a direction that is not parallel to the axis",
             _ => "the direction from which the angle is measured",
         };
-        require_direction(reader, section, title, ("zero", meaning, sides));
+        require_direction(reader, section, ("zero", meaning, sides));
     }
 }
 
 fn require_direction(
     reader: &mut Reader<'_>,
     section: &Section<'_>,
-    title: &str,
     (key, meaning, sides): (&'static str, &str, &[Side]),
 ) {
     let has = |side: Side| {
@@ -139,9 +80,10 @@ fn require_direction(
     if section.has(key) || missing.is_empty() || reader.is_doubted(section.place(key)) {
         return;
     }
+    let title = &section.title;
     let (of, place) = match missing.as_slice() {
         [side] => (format!("`{side}` of {title}"), format!("in `{side}`")),
-        _ => (title.to_owned(), "in the joint, for both bodies".to_owned()),
+        _ => (title.clone(), "in the joint, for both bodies".to_owned()),
     };
     let other = if key == "axis" { "zero" } else { "axis" };
     let of_ends = sides.iter().map(|side| {
@@ -179,38 +121,35 @@ fn off(key: &str, others: &[&DeValue<'_>]) -> &'static str {
 }
 
 /// What both ends of a joint share.
-struct Shared<'t, 'a> {
+struct Shared<'t> {
     section: Section<'t>,
-    title: &'a str,
     index: usize,
     kind: Option<JointKind>,
 }
 
-fn end(reader: &mut Reader<'_>, joint: &Shared<'_, '_>, side: Side) -> JointEnd {
-    let written =
-        joint.section.get(side.key()).and_then(|item| item.value.get_ref().as_str()).unwrap_or("...");
-    let example = format!("{} = {{ body = {written:?} }}", side.key());
-    let empty = DeTable::new();
-    let item = joint.section.require(reader, side.key(), joint.title, &example);
-    let table = item.and_then(|item| item.table(reader, &example));
-    let title = format!("`{}` of {}", side.key(), joint.title);
-    let owner = Owner::End(joint.index, side);
-    if let Some(item) = item {
-        reader.mark(Place { owner, key: "" }, item.span());
+fn end(reader: &mut Reader<'_>, joint: &Shared<'_>, side: Side) -> JointEnd {
+    let title = format!("`{}` of {}", side.key(), joint.section.title);
+    let end = joint.section.inner(reader, side.key(), (Owner::End(joint.index, side), &title));
+    if let Some(end) = &end {
+        refuse_directions(reader, joint, end, side);
     }
-    let section = Section::open(reader, owner, &title, table.unwrap_or(&empty), &END_KEYS);
-    let body = table.and_then(|_| references::body(reader, &section, &title)).unwrap_or(0);
-    refuse_directions(reader, joint, &section, side);
-    JointEnd {
-        body,
-        point: inherited(reader, joint, &section, "point", [0; 3]),
-        axis: direction(reader, joint, &section, side, "axis"),
-        zero: direction(reader, joint, &section, side, "zero"),
-    }
+    // A key of the end, or else of the joint, or else its default.
+    let own = |key| end.as_ref().filter(|end| end.has(key)).unwrap_or(&joint.section);
+    let is_directed = joint.kind.is_some_and(|kind| kinds::directed_sides(kind).contains(&side));
+    let mut direction = |key, default: [i64; 3]| {
+        let given = if is_directed { own(key).given_vector(reader, key) } else { None };
+        given.unwrap_or_else(|| default.map(Number::integer))
+    };
+    let [axis, zero] = [direction("axis", [0, 0, 1]), direction("zero", [1, 0, 0])];
+    let body = end.as_ref().map_or(0, |end| match references::index(reader, end, "body") {
+        references::NOTHING => 0,
+        body => body,
+    });
+    JointEnd { body, point: own("point").vector(reader, "point"), axis, zero }
 }
 
 /// An end of a joint that measures nothing on this side has no directions of its own.
-fn refuse_directions(reader: &mut Reader<'_>, joint: &Shared<'_, '_>, section: &Section<'_>, side: Side) {
+fn refuse_directions(reader: &mut Reader<'_>, joint: &Shared<'_>, section: &Section<'_>, side: Side) {
     let Some(kind) = joint.kind.filter(|&kind| !kinds::directed_sides(kind).contains(&side)) else { return };
     for key in ["axis", "zero"] {
         let (message, help) = match kind {
@@ -225,37 +164,5 @@ fn refuse_directions(reader: &mut Reader<'_>, joint: &Shared<'_, '_>, section: &
             ),
         };
         section.refuse(reader, key, &message, help);
-    }
-}
-
-/// A vector of the end, or else of the joint, or else a default.
-fn inherited(
-    reader: &mut Reader<'_>,
-    joint: &Shared<'_, '_>,
-    section: &Section<'_>,
-    key: &'static str,
-    default: [i64; 3],
-) -> [Number; 3] {
-    if section.has(key) {
-        section.vector_or(reader, key, default)
-    } else {
-        joint.section.vector_or(reader, key, default)
-    }
-}
-
-/// A direction of a joint frame; a default where the kind measures none on this side.
-fn direction(
-    reader: &mut Reader<'_>,
-    joint: &Shared<'_, '_>,
-    section: &Section<'_>,
-    side: Side,
-    key: &'static str,
-) -> [Number; 3] {
-    let default = if key == "axis" { [0, 0, 1] } else { [1, 0, 0] };
-    match joint.kind {
-        Some(kind) if kinds::directed_sides(kind).contains(&side) => {
-            inherited(reader, joint, section, key, default)
-        }
-        _ => default.map(Number::integer),
     }
 }

@@ -1,46 +1,8 @@
-//! The kinds of joint in the model file, and which keys each of them has.
+//! The kinds of joint in the model file: how they start, and what to do about keys of others.
 
-use super::reader::Reader;
-use super::section::Section;
+use crate::keys::{self, Kind};
+use crate::validate::Side;
 use crate::{CoordinateKind, JointKind};
-
-/// The names of the kinds.
-pub(super) const KINDS: [(&str, JointKind); 10] = {
-    use JointKind::{
-        Cylindrical, Fixed, Planar, PointOnLine, Prismatic, Revolute, Rod, Screw, Spherical, Universal,
-    };
-    let all =
-        [Revolute, Spherical, Fixed, Universal, Cylindrical, Prismatic, Planar, Screw, PointOnLine, Rod];
-    let mut named = [("", Revolute); 10];
-    let mut k = 0;
-    while k < all.len() {
-        named[k] = (all[k].name(), all[k]);
-        k += 1;
-    }
-    named
-};
-
-/// Keys that only some kinds have.
-const OF_KINDS: [&str; 18] = [
-    "axis",
-    "zero",
-    "damping",
-    "armature",
-    "lead",
-    "pitch",
-    "length",
-    "angle",
-    "angle_deg",
-    "first_angle",
-    "first_angle_deg",
-    "second_angle",
-    "second_angle_deg",
-    "displacement",
-    "x",
-    "y",
-    "orientation",
-    "rate",
-];
 
 /// The keys with which a coordinate starts: of an angle a second one in degrees.
 pub(super) fn start_keys(coordinate: CoordinateKind) -> (&'static str, Option<&'static str>) {
@@ -55,52 +17,17 @@ pub(super) fn start_keys(coordinate: CoordinateKind) -> (&'static str, Option<&'
 }
 
 /// How many directions a kind measures from: an axis and a zero direction on each of these sides.
-pub(super) fn directed_sides(kind: JointKind) -> &'static [crate::validate::Side] {
-    use crate::validate::Side::{First, Second};
+pub(super) fn directed_sides(kind: JointKind) -> &'static [Side] {
     match kind {
-        JointKind::Spherical | JointKind::Rod => &[],
-        JointKind::PointOnLine => &[First],
-        _ => &[First, Second],
-    }
-}
-
-/// Refuses the keys that mean nothing for a kind.
-pub(super) fn refuse_misplaced(reader: &mut Reader<'_>, section: &Section<'_>, kind: JointKind) {
-    for key in OF_KINDS.into_iter().chain(["rough"]) {
-        if !has(kind, key) {
-            let message = format!("a {} takes no `{key}`", title(kind));
-            section.refuse(reader, key, &message, &help(kind, key));
-        }
-    }
-}
-
-/// A joint of the kind, in words.
-pub(super) fn title(kind: JointKind) -> String {
-    match kind {
-        JointKind::Rod => "rod".to_owned(),
-        _ => format!("{} joint", kind.name()),
-    }
-}
-
-fn has(kind: JointKind, key: &str) -> bool {
-    let starts = kind.coordinates().iter().any(|&coordinate| {
-        let (plain, degrees) = start_keys(coordinate);
-        key == plain || Some(key) == degrees
-    });
-    match key {
-        "axis" | "zero" => !directed_sides(kind).is_empty(),
-        "damping" => kind == JointKind::Spherical || kind.coordinates().len() == 1,
-        "armature" => kind.turns_one_rotor(),
-        "lead" | "pitch" => kind == JointKind::Screw,
-        "length" => kind == JointKind::Rod,
-        "orientation" => kind == JointKind::Spherical,
-        "rate" | "rough" => kind == JointKind::Spherical || !kind.coordinates().is_empty(),
-        _ => starts,
+        JointKind::PointOnLine => &Side::BOTH[..1],
+        _ if keys::JOINT.kind(kind.name()).is_some_and(|kind| kind.key("axis").is_some()) => &Side::BOTH,
+        _ => &[],
     }
 }
 
 /// What to write instead of a key that a kind does not have.
-fn help(kind: JointKind, key: &str) -> String {
+pub(super) fn cure(kind: &Kind, key: &str) -> Option<String> {
+    let kind = JointKind::named(kind.word)?;
     let help = match (key, kind) {
         ("axis", JointKind::Spherical) => "remove it: a spherical joint turns about every axis",
         ("zero", JointKind::Spherical) => "remove it: a spherical joint has no angle to measure",
@@ -120,9 +47,9 @@ fn help(kind: JointKind, key: &str) -> String {
         }
         ("damping", _) => "add a [[force]] of kind \"damper\" on each coordinate that is to resist",
         (_, JointKind::Spherical) => "start it with orientation = [e0, e1, e2, e3]",
-        _ => return start_help(kind),
+        _ => return Some(start_help(kind)),
     };
-    help.to_owned()
+    Some(help.to_owned())
 }
 
 fn start_help(kind: JointKind) -> String {

@@ -40,6 +40,7 @@ use toml::de::DeTable;
 
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::directions;
+use crate::keys::{FILE, Key, Value};
 use crate::validate::{coordinate_problems, number_problems, settings_problems, topology_problems};
 use crate::{Model, Number};
 use reader::Reader;
@@ -165,7 +166,7 @@ fn syntax_mistakes(text: &str, errors: &[toml::de::Error]) -> Vec<Diagnostic> {
         let written = text.get(span.start..).unwrap_or_default();
         // As much as a header takes: all that follows, for each of many errors, would be a square of it.
         let written = written.char_indices().nth(20).map_or(written, |(end, _)| &written[..end]);
-        let help = syntax_help(error.message(), written).to_owned();
+        let help = syntax_help(error.message(), written);
         let message =
             format!("TOML syntax error: {}", error.message().trim_end_matches(", expected nothing"));
         Diagnostic { span, message, label: "cannot be parsed".to_owned(), help, related: Vec::new() }
@@ -174,23 +175,19 @@ fn syntax_mistakes(text: &str, errors: &[toml::de::Error]) -> Vec<Diagnostic> {
 }
 
 /// What to do about the commonest syntax errors.
-fn syntax_help(message: &str, written: &str) -> &'static str {
+fn syntax_help(message: &str, written: &str) -> String {
     if message.contains("duplicate key") {
-        match written.split_once(']') {
-            Some(("body", _)) => "write [[body]] above each body",
-            Some(("joint", _)) => "write [[joint]] above each joint",
-            Some(("coupler", _)) => "write [[coupler]] above each coupler",
-            Some(("driver", _)) => "write [[driver]] above each driver",
-            Some(("force", _)) => "write [[force]] above each force",
-            Some(("output", _)) => "write [[output]] above each output",
-            Some(("controller", _)) => "write [[controller]] above each controller",
-            _ => "a key may appear only once: remove one of the two",
+        let name = written.split_once(']').map_or("", |(name, _)| name);
+        let is_list = |key: &&Key| key.name == name && matches!(key.value, Value::Tables(_));
+        match FILE.keys.iter().find(is_list) {
+            Some(_) => format!("write [[{name}]] above each {name}"),
+            None => "a key may appear only once: remove one of the two".to_owned(),
         }
     } else if written.starts_with(',') {
-        "write numbers with a decimal point, and lists of numbers in brackets"
+        "write numbers with a decimal point, and lists of numbers in brackets".to_owned()
     } else if message.contains("quoted") {
-        "put strings in double quotes"
+        "put strings in double quotes".to_owned()
     } else {
-        "a line is `key = value`, `[table]` or `[[table]]`; see docs/model-format.md"
+        "a line is `key = value`, `[table]` or `[[table]]`; see docs/model-format.md".to_owned()
     }
 }

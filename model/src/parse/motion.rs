@@ -1,18 +1,17 @@
 //! Motions prescribed in time: constants, polynomials, sinusoids, their sums and products, tables.
 
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 use super::names;
-use super::numbers::{number, plain_number, radians, turns};
+use super::numbers::{number, radians, turns};
 use super::reader::Reader;
-use super::section::{Item, Section, found};
+use super::section::{Item, Section, all, found};
 use super::table;
+use crate::keys::{MOTION, SINUSOID};
 use crate::{Motion, Number};
 
 /// The forms of a motion; each excludes the others.
 const FORMS: [&str; 5] = ["polynomial", "sinusoid", "sum", "product", "table"];
-const KEYS: [&str; 7] = ["polynomial", "sinusoid", "sum", "product", "table", "columns", "between"];
-const SINUSOID_KEYS: [&str; 5] = ["amplitude", "angular_frequency", "frequency_hz", "phase", "phase_deg"];
 
 /// No motion: the constant zero.
 pub(super) fn rest() -> Motion {
@@ -22,7 +21,7 @@ pub(super) fn rest() -> Motion {
 /// Reads a motion: a number, or a table of one of the forms.
 pub(super) fn read(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
     let motion = match item.value.get_ref() {
-        DeValue::Table(table) => form(reader, item, table),
+        DeValue::Table(_) => form(reader, item),
         DeValue::Array(_) => {
             let words = [
                 "a motion must be a number or a table".to_owned(),
@@ -40,11 +39,11 @@ pub(super) fn read(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
     motion
 }
 
-fn form(reader: &mut Reader<'_>, item: Item<'_>, table: &DeTable<'_>) -> Option<Motion> {
-    let section = Section::open(reader, item.place.owner, "a motion", table, &KEYS);
+fn form(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
+    let section = Section::within(reader, item, "a motion", &MOTION)?;
     let mut given = FORMS.into_iter().filter(|form| section.has(form));
     let (Some(form), None) = (given.next(), given.next()) else {
-        if table.keys().all(|key| KEYS.contains(&key.get_ref().as_ref())) {
+        if section.is_known() {
             item.wrong(reader, not_one_form(&section));
         }
         return None;
@@ -57,8 +56,8 @@ fn form(reader: &mut Reader<'_>, item: Item<'_>, table: &DeTable<'_>) -> Option<
     match form {
         "polynomial" => polynomial(reader, value),
         "sinusoid" => sinusoid(reader, value),
-        "sum" => several(reader, value).map(Motion::Sum),
-        "product" => several(reader, value).map(Motion::Product),
+        "sum" => several(reader, value, 0).map(Motion::Sum),
+        "product" => several(reader, value, 0).map(Motion::Product),
         _ => table::read(reader, &section, value),
     }
 }
@@ -74,59 +73,53 @@ fn not_one_form(section: &Section<'_>) -> [String; 3] {
 }
 
 fn polynomial(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
-    let elements = item.value.get_ref().as_array().filter(|elements| !elements.is_empty());
-    let Some(elements) = elements else {
-        let expected = "an array of coefficients: the degree cannot be a parameter";
-        item.wrong_type(reader, expected, "polynomial = [c0, c1, c2], for c0 + c1 t + c2 t^2");
+    if item.elements().next().is_none() {
+        item.wrong_type(reader, "an array of coefficients: the degree cannot be a parameter");
         return None;
-    };
-    let coefficients: Vec<Option<Number>> =
-        elements.iter().map(|value| number(reader, Item { value, ..item })).collect();
-    coefficients.into_iter().collect::<Option<Vec<Number>>>().map(Motion::Polynomial)
+    }
+    all(item.elements().map(|item| number(reader, item))).map(Motion::Polynomial)
 }
 
 fn sinusoid(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
-    const EXAMPLE: &str = "sinusoid = { amplitude = 0.1, frequency_hz = 2 }";
-    let table = item.table(reader, EXAMPLE)?;
-    let section = Section::open(reader, item.place.owner, "a sinusoid", table, &SINUSOID_KEYS);
-    let example = ("the sinusoid", "amplitude = ..., in rad or m");
-    let amplitude = section.require_within(reader, item, "amplitude", example);
-    let amplitude = amplitude.and_then(|item| number(reader, item));
-    let angular_frequency = angular_frequency(reader, &section, item);
+    let section = Section::within(reader, item, "a sinusoid", &SINUSOID)?;
+    let amplitude = section.given(reader, "amplitude");
+    let angular_frequency = angular_frequency(reader, &section);
     let phase = phase(reader, &section);
     Some(Motion::Sinusoid { amplitude: amplitude?, angular_frequency: angular_frequency?, phase: phase? })
 }
 
 /// `angular_frequency`, rad/s, or `frequency_hz`, which must be written out: 2π times it is rounded once.
-fn angular_frequency(reader: &mut Reader<'_>, section: &Section<'_>, whole: Item<'_>) -> Option<Number> {
-    if !section.has("frequency_hz") {
-        let example = ("the sinusoid", "angular_frequency = ..., in rad/s, or frequency_hz = ...");
-        let item = section.require_within(reader, whole, "angular_frequency", example)?;
-        return number(reader, item);
+fn angular_frequency(reader: &mut Reader<'_>, section: &Section<'_>) -> Option<Number> {
+    let keys = ["frequency_hz", "angular_frequency"];
+    if section.either(reader, keys, "the frequency is given twice").is_none() {
+        section.require(reader, "angular_frequency");
     }
-    let help = "remove `angular_frequency` or `frequency_hz`";
-    section.refuse(reader, "angular_frequency", "the frequency is given twice", help);
-    let item = section.get("frequency_hz")?;
-    plain_number(reader, item).map(turns).filter(|_| !section.has("angular_frequency"))
+    match keys.map(|key| section.has(key)) {
+        [true, true] => None,
+        [true, false] => section.plain(reader, "frequency_hz").map(turns),
+        [false, _] => section.given(reader, "angular_frequency"),
+    }
 }
 
 /// `phase`, rad, or `phase_deg`; none is zero.
 fn phase(reader: &mut Reader<'_>, section: &Section<'_>) -> Option<Number> {
-    let Some(degrees) = section.get("phase_deg") else {
-        return section.get("phase").map_or_else(|| Some(Number::integer(0)), |item| number(reader, item));
-    };
-    section.refuse(reader, "phase", "the phase is given twice", "remove `phase` or `phase_deg`");
-    plain_number(reader, degrees).map(radians).filter(|_| !section.has("phase"))
+    let keys = ["phase_deg", "phase"];
+    let item = section.either(reader, keys, "the phase is given twice");
+    match (item, keys.map(|key| section.has(key))) {
+        (_, [true, true]) => None,
+        (_, [true, false]) => section.plain(reader, "phase_deg").map(radians),
+        (Some(item), _) => number(reader, item),
+        (None, _) => Some(Number::integer(0)),
+    }
 }
 
-fn several(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Vec<Motion>> {
-    let elements = item.value.get_ref().as_array().filter(|elements| !elements.is_empty());
-    let Some(elements) = elements else {
-        let example = format!("{} = [motion, motion]", item.key());
-        item.wrong_type(reader, "an array of motions", &example);
+/// The motions of an array: at least one, or so many.
+pub(super) fn several(reader: &mut Reader<'_>, item: Item<'_>, length: usize) -> Option<Vec<Motion>> {
+    let found = item.elements().count();
+    if found == 0 || length > 0 && found != length {
+        let many = if length == 0 { String::new() } else { format!("{length} ") };
+        item.wrong_type(reader, &format!("an array of {many}motions"));
         return None;
-    };
-    let motions: Vec<Option<Motion>> =
-        elements.iter().map(|value| read(reader, Item { value, ..item })).collect();
-    motions.into_iter().collect()
+    }
+    all(item.elements().map(|item| read(reader, item)))
 }

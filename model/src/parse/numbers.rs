@@ -6,14 +6,12 @@ use toml::de::DeValue;
 use super::computed::{self, Fault, Meaning};
 use super::expression::{self, Term};
 use super::reader::Reader;
-use super::section::{Item, Section, found};
+use super::section::{Item, Section, all, found};
 use super::{names, units};
+use crate::keys::{FORCE, Key, Value};
 use crate::number::{SIZE_EXPONENT, in_range};
-use crate::validate::{Owner, Place};
+use crate::validate::out_of_range;
 use crate::{Number, Rational, parse_decimal};
-
-/// Keys of forces that may be inputs.
-const STRENGTHS: [&str; 5] = ["value", "force", "torque", "level", "damping"];
 
 /// What the name in place of a number may be.
 #[derive(Clone, Copy)]
@@ -26,37 +24,74 @@ enum Names {
 const MAX_DIGITS: usize = 400;
 
 impl Section<'_> {
-    /// The number of a key, or a default.
-    pub(super) fn number_or(&self, reader: &mut Reader<'_>, key: &'static str, default: i64) -> Number {
-        let number = self.get(key).and_then(|item| number(reader, item));
-        number.unwrap_or_else(|| Number::integer(default))
+    /// The number of a key; where there is none, or a wrong one, the default, or 1, which is never refused.
+    pub(super) fn number(&self, reader: &mut Reader<'_>, name: &'static str) -> Number {
+        self.given(reader, name).unwrap_or_else(|| self.default(name, 0))
     }
 
-    /// The vector of a key, or a default.
-    pub(super) fn vector_or<const N: usize>(
+    /// The number of a key, if there is one.
+    pub(super) fn given(&self, reader: &mut Reader<'_>, name: &'static str) -> Option<Number> {
+        self.find(reader, name).and_then(|item| number(reader, item))
+    }
+
+    /// The vector of a key, or the default.
+    pub(super) fn vector<const N: usize>(&self, reader: &mut Reader<'_>, name: &'static str) -> [Number; N] {
+        let vector = self.given_vector(reader, name);
+        vector.unwrap_or_else(|| std::array::from_fn(|k| self.default(name, k)))
+    }
+
+    /// The vector of a key, if there is one.
+    pub(super) fn given_vector<const N: usize>(
         &self,
         reader: &mut Reader<'_>,
-        key: &'static str,
-        default: [i64; N],
-    ) -> [Number; N] {
-        let vector = self.get(key).and_then(|item| vector(reader, item));
-        vector.unwrap_or_else(|| default.map(Number::integer))
+        name: &'static str,
+    ) -> Option<[Number; N]> {
+        self.find(reader, name).and_then(|item| vector(reader, item))
+    }
+
+    /// So many numbers: one for all, or an array.
+    pub(super) fn each(
+        &self,
+        reader: &mut Reader<'_>,
+        name: &'static str,
+        length: usize,
+    ) -> Option<Vec<Number>> {
+        let item = self.find(reader, name)?;
+        match item.value.get_ref() {
+            DeValue::Array(_) => numbers(reader, item, length),
+            _ => number(reader, item).map(|one| vec![one; length]),
+        }
+    }
+
+    /// A number that is written out, if there is one in its range.
+    pub(super) fn plain(&self, reader: &mut Reader<'_>, name: &'static str) -> Option<Rational> {
+        let item = self.find(reader, name)?;
+        let value = plain_number(reader, item)?;
+        match out_of_range(item.key, &self.title, &value) {
+            Some(words) => item.wrong(reader, words),
+            None => return Some(value),
+        }
+        None
+    }
+
+    /// The number that holds where a key is not there, or one of a vector.
+    fn default(&self, name: &str, place: usize) -> Number {
+        let Key { default, is_required, .. } = self.key(name);
+        let mut numbers = default.trim_matches(['[', ']']).split(", ").map(|text| text.parse().ok());
+        let number = numbers.nth(place).flatten().unwrap_or(i64::from(*is_required));
+        Number::integer(number)
     }
 }
 
-/// A number: a decimal, or a string that names a parameter or has an expression in it.
+/// A number: a decimal, or a string that names a parameter or, of a strength, an input, or has an expression in it.
 pub(super) fn number(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Number> {
-    referring(reader, item, Names::Parameters)
-}
-
-/// The strength of a force: a number that may be an input, too.
-pub(super) fn strength(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Number> {
-    referring(reader, item, Names::ParametersAndInputs)
-}
-
-fn referring(reader: &mut Reader<'_>, item: Item<'_>, allowed: Names) -> Option<Number> {
-    match item.value.get_ref() {
-        DeValue::String(text) => reference(reader, item, text, allowed),
+    let allowed = match item.key.value {
+        Value::Strength(_) | Value::Strengths(_) => Names::ParametersAndInputs,
+        _ => Names::Parameters,
+    };
+    match (item.value.get_ref(), item.key.value) {
+        (_, Value::Plain(_)) => plain_number(reader, item).map(Number::Exact),
+        (DeValue::String(text), _) => reference(reader, item, text, allowed),
         _ => plain_number(reader, item).map(Number::Exact),
     }
 }
@@ -69,7 +104,7 @@ pub(super) fn plain_number(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Ra
         DeValue::String(text) => return plain_expression(reader, item, text),
         other => {
             let words = [
-                format!("expected a number for `{}`", item.key()),
+                format!("expected a number for `{}`", item.key.name),
                 format!("found {}", found(other)),
                 "write a number such as 0.5 or 100e-7".to_owned(),
             ];
@@ -82,7 +117,7 @@ pub(super) fn plain_number(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Ra
 
 /// An expression in place of a number that must be written out: it may not name parameters.
 fn plain_expression(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Rational> {
-    let key = item.key();
+    let key = item.key.name;
     let name = text.trim_start_matches('-');
     let what = match (names_parameter(reader, name), reader.inputs.iter().any(|input| input == name)) {
         (true, _) => "a parameter",
@@ -123,41 +158,24 @@ pub(super) fn vector<const N: usize>(reader: &mut Reader<'_>, item: Item<'_>) ->
 
 /// An array of some numbers.
 pub(super) fn numbers(reader: &mut Reader<'_>, item: Item<'_>, length: usize) -> Option<Vec<Number>> {
-    elements(reader, item, length, number)
-}
-
-/// A vector of a force's strength, whose elements may be inputs.
-pub(super) fn strengths(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number; 3]> {
-    elements(reader, item, 3, strength).and_then(|numbers| numbers.try_into().ok())
-}
-
-fn elements(
-    reader: &mut Reader<'_>,
-    item: Item<'_>,
-    length: usize,
-    element: fn(&mut Reader<'_>, Item<'_>) -> Option<Number>,
-) -> Option<Vec<Number>> {
+    let key = item.key.name;
     let what = format!("an array of {length} numbers");
-    let example = format!("{} = [{}]", item.key(), example(item.key(), length).join(", "));
+    let help = format!("write {key} = [{}]", example(key, length).join(", "));
     let Some(elements) = item.value.get_ref().as_array() else {
-        match (length, along_one_axis(item)) {
-            (3, Some(help)) => item.wrong_type_with(reader, &what, help),
-            _ => item.wrong_type(reader, &what, &example),
-        }
+        let along = along_one_axis(item).filter(|_| length == 3);
+        item.wrong_type_with(reader, &what, along.unwrap_or(help));
         return None;
     };
     if elements.len() != length {
-        item.wrong_type(reader, &what, &example);
+        item.wrong_type_with(reader, &what, help);
     }
-    let numbers: Vec<Option<Number>> =
-        elements.iter().map(|value| element(reader, Item { place: item.place, value })).collect();
-    let numbers: Option<Vec<Number>> = numbers.into_iter().collect();
+    let numbers = all(item.elements().map(|item| number(reader, item)));
     numbers.filter(|numbers| numbers.len() == length)
 }
 
 /// What to write instead of a number, or of an axis by its letter, where a vector of three is wanted.
 fn along_one_axis(item: Item<'_>) -> Option<String> {
-    let key = item.key();
+    let key = item.key.name;
     let along = |k: usize, number: &str| {
         let elements: Vec<&str> = (0..3).map(|l| if k == l { number } else { "0" }).collect();
         format!("{key} = [{}]", elements.join(", "))
@@ -217,9 +235,9 @@ fn reference(reader: &mut Reader<'_>, item: Item<'_>, text: &str, allowed: Names
     }
     match (reader.inputs.iter().position(|input| input == name), allowed) {
         (Some(index), Names::ParametersAndInputs) => return Some(Number::Input { index, negated }),
-        (Some(_), Names::Parameters) => item.wrong(reader, not_an_input(item.key(), name)),
+        (Some(_), Names::Parameters) => item.wrong(reader, not_an_input(item.key.name, name)),
         (None, _) if is_word(text) || parse_decimal(text).is_some() || is_hyphenated(reader, text) => {
-            item.wrong(reader, unknown_name(reader, item.key(), text, allowed));
+            item.wrong(reader, unknown_name(reader, item.key.name, text, allowed));
         }
         (None, _) => return expression(reader, item, text, allowed),
     }
@@ -269,7 +287,7 @@ fn expression(reader: &mut Reader<'_>, item: Item<'_>, text: &str, allowed: Name
             return None;
         }
     };
-    if let Some(words) = misused_unit(item.place, text, &term) {
+    if let Some(words) = misused_unit(item.key, text, &term) {
         item.wrong(reader, words);
         return None;
     }
@@ -307,7 +325,7 @@ pub(super) fn broken(reader: &mut Reader<'_>, item: Item<'_>, text: &str, at: us
     let word = rest.split(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or_default();
     let is_unit = !is_known(word)
         && (rest.starts_with(|c: char| c.is_alphabetic() || c == '°') || rest.starts_with("1/"));
-    match units::with_unit(item.place, text).filter(|_| is_unit) {
+    match units::with_unit(item.key, text).filter(|_| is_unit) {
         Some(words) => item.wrong(reader, words),
         None => {
             let fault = computed::syntax(text, at, &is_known);
@@ -317,18 +335,18 @@ pub(super) fn broken(reader: &mut Reader<'_>, item: Item<'_>, text: &str, at: us
 }
 
 /// The message for a unit of angle, or of its rate, where the key has another.
-fn misused_unit(place: Place, text: &str, term: &Term) -> Option<[String; 3]> {
+fn misused_unit(key: &Key, text: &str, term: &Term) -> Option<[String; 3]> {
     let units = term.units();
-    let expected = units::of_place(place)?;
+    let expected = key.unit()?;
     let is_angle = expected.contains("rad") && !expected.contains("rad/s");
     // Of a motion, coefficients may be of any derivative.
-    let is_motion = place.key == "motion" || matches!(place.owner, Owner::Driven(_));
+    let is_motion = matches!(key.value, Value::Motion(_) | Value::Motions(..));
     let is_misused = !units.is_empty() && !expected.contains("rad")
         || is_angle && !is_motion && units.iter().any(|unit| unit.is_rate());
     is_misused.then(|| {
-        units::with_unit(place, text).unwrap_or_else(|| {
+        units::with_unit(key, text).unwrap_or_else(|| {
             [
-                format!("`{}` must be a number in {expected}", place.key),
+                format!("`{}` must be a number in {expected}", key.name),
                 "an expression with a unit of angle".to_owned(),
                 format!("write it without the unit, in {expected}"),
             ]
@@ -348,7 +366,7 @@ fn input_within(name: &str, allowed: Names) -> [String; 3] {
 pub(super) fn unknown_in_expression(reader: &Reader<'_>, name: &str) -> [String; 3] {
     let derived = reader.derived.iter().map(|(name, _)| name.as_str());
     let known: Vec<&str> = reader.parameters.iter().map(String::as_str).chain(derived).collect();
-    let moves = reader.joints.iter().any(|joint| joint.name.as_deref() == Some(name));
+    let moves = reader.has_joint(name);
     let help = match name.to_ascii_lowercase().as_str() {
         _ if moves => format!(
             "numbers are constants and parameters, and `{name}` is a joint, which moves: declare an input for the \
@@ -363,6 +381,13 @@ pub(super) fn unknown_in_expression(reader: &Reader<'_>, name: &str) -> [String;
     [format!("unknown parameter `{name}`"), "in this expression".to_owned(), help]
 }
 
+/// Keys of forces that may be inputs.
+fn strengths() -> Vec<&'static str> {
+    let mut all = FORCE.all();
+    all.retain(|key| matches!(key.value, Value::Strength(_) | Value::Strengths(_)));
+    all.into_iter().map(|key| key.name).collect()
+}
+
 fn not_an_input(key: &str, name: &str) -> [String; 3] {
     [
         format!("`{key}` cannot be an input"),
@@ -370,7 +395,7 @@ fn not_an_input(key: &str, name: &str) -> [String; 3] {
         format!(
             "inputs are for forces only, for their strength ({}): write the number, or declare `{name}` under \
              [parameters]",
-            names::list(&STRENGTHS)
+            names::list(&strengths())
         ),
     ]
 }
@@ -434,29 +459,4 @@ fn sized(text: &str, value: Option<Rational>) -> Result<Rational, [String; 3]> {
             ),
         ]
     })
-}
-
-/// The longest time of a run's settings, s: thirty million years.
-const LONGEST: u64 = 1_000_000_000_000_000;
-
-/// A place of the simulation settings: a positive time.
-pub(super) fn positive(
-    reader: &mut Reader<'_>,
-    section: &Section<'_>,
-    key: &'static str,
-) -> Option<Rational> {
-    debug_assert_eq!(section.owner, Owner::Simulation);
-    let item = section.get(key)?;
-    let value = plain_number(reader, item)?;
-    let [least, most] = [0, LONGEST].map(|end| Rational::from_integer(end.into()));
-    if value > least && value <= most {
-        return Some(value);
-    }
-    let label = format!("{} s", crate::to_f64(&value));
-    let [message, help] = match value > least {
-        true => [format!("`{key}` is too long"), format!("write at most {LONGEST:e} s")],
-        false => [format!("`{key}` must be positive"), "write a time greater than 0, in s".to_owned()],
-    };
-    item.wrong(reader, [message, label, help]);
-    None
 }

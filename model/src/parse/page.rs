@@ -5,45 +5,25 @@ use toml::de::DeTable;
 
 use super::lines;
 use super::names;
-use super::numbers::plain_number;
 use super::reader::Reader;
 use super::section::{Section, keyword};
 use super::{
     bodies, contacts, controllers, couplings, events, forces, joints, outputs, parameters, point_masses,
     simulation,
 };
+use crate::keys::{FILE, GENERATE};
 use crate::validate::{Owner, Place};
 use crate::{Between, Model};
-
-const KEYS: [&str; 17] = [
-    "format",
-    "name",
-    "gravity",
-    "count_work",
-    "simulation",
-    "generate",
-    "parameters",
-    "inputs",
-    "body",
-    "joint",
-    "coupler",
-    "driver",
-    "force",
-    "output",
-    "controller",
-    "event",
-    "contact",
-];
 
 /// Reads everything. Where something is wrong the reader knows, and a default stands in the model.
 pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     reader.mark(Place { owner: Owner::Page, key: "" }, 0..0);
-    let page = Section::open(reader, Owner::Page, "the model file", table, &KEYS);
+    let page = Section::open(reader, Owner::Page, "the model file", table, &FILE);
     format(reader, &page);
     let name = name(reader, &page);
     let parameters::Tables { parameters, derived, mut inputs, mut between } = parameters::read(reader, &page);
-    let gravity = page.vector_or(reader, "gravity", [0; 3]);
-    let counts_work = page.get("count_work").and_then(|item| item.flag(reader)).unwrap_or(true);
+    let gravity = page.vector(reader, "gravity");
+    let counts_work = page.flag(reader, "count_work");
     let functions = functions(reader, &page);
     let simulation = simulation::read(reader, &page);
     let (mut bodies, point_masses): (Vec<_>, Vec<_>) = bodies::read(reader, &page).into_iter().unzip();
@@ -61,7 +41,9 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         between.push(Between::default());
         forces.push(contact.own_force());
     }
-    let mut outputs = outputs::read(reader, &page, &forces);
+    let named = contacts.iter().map(|contact| Some(contact.name.clone()));
+    reader.names.entry("force").or_default().extend(named);
+    let mut outputs = outputs::read(reader, &page);
     contacts::loads(reader, &mut contacts, &joints, &mut outputs);
     let controllers = controllers::read(reader, &page, &outputs);
     let events = events::read(reader, &page, &outputs);
@@ -93,19 +75,16 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
 }
 
 fn format(reader: &mut Reader<'_>, page: &Section<'_>) {
-    let Some(item) = page.require(reader, "format", "the model file", "format = 1 at the top") else {
-        return;
-    };
-    let version = plain_number(reader, item);
-    if version.is_some_and(|version| !version.is_one()) {
+    let version = page.plain(reader, "format");
+    let item = page.get("format").filter(|_| version.is_some_and(|version| !version.is_one()));
+    if let Some(item) = item {
         let words = ["unknown format", "only format 1 is supported", "write format = 1"];
         item.wrong(reader, words.map(str::to_owned));
     }
 }
 
 fn name(reader: &mut Reader<'_>, page: &Section<'_>) -> String {
-    let example = "name = \"some_name\", the name of the generated module";
-    let Some(item) = page.require(reader, "name", "the model file", example) else { return String::new() };
+    let Some(item) = page.find(reader, "name") else { return String::new() };
     let name = item.name(reader).unwrap_or_default();
     if names::is_keyword(name) {
         item.wrong(reader, keyword(name));
@@ -115,16 +94,8 @@ fn name(reader: &mut Reader<'_>, page: &Section<'_>) -> String {
 
 /// The names of the functions to be generated: which there are is the generator's to know.
 fn functions(reader: &mut Reader<'_>, page: &Section<'_>) -> Option<Vec<String>> {
-    let example = "[generate] on a line of its own, then functions = [\"joint\"]";
-    let table = page.get("generate")?.table(reader, example)?;
-    let section = Section::open(reader, Owner::Page, "[generate]", table, &["functions"]);
-    let item = section.get("functions")?;
-    let names = item.value.get_ref().as_array().map(|array| {
-        array.iter().map(|name| name.get_ref().as_str().map(str::to_owned)).collect::<Option<Vec<_>>>()
-    });
-    let names = names.flatten();
-    if names.is_none() {
-        item.wrong_type(reader, "an array of names", "functions = [\"joint\", \"jacobian\"]");
-    }
-    names
+    let table = page.get("generate")?.table(reader)?;
+    let section = Section::open(reader, Owner::Page, "[generate]", table, &GENERATE);
+    let names = section.get("functions")?.texts(reader, "an array of names")?;
+    Some(names.into_iter().map(|(_, name)| name.to_owned()).collect())
 }

@@ -15,14 +15,15 @@ use super::numbers::plain_number;
 use super::reader::Reader;
 use super::section::{Item, Section, keyword, unfit};
 use crate::diagnostics::Related;
+use crate::keys::{INPUT, Key};
 use crate::validate::{Owner, Place};
 use crate::{Between, DerivedParameter, Parameter, Rational};
 
 /// Fields that a generated mechanism has besides its inputs.
 pub(super) const OWN_FIELDS: [&str; 2] = ["parameters", "derived"];
 
-const BETWEEN: [(&str, Between); 3] =
-    [("linear", Between::Linear), ("held", Between::Held), ("smooth", Between::Smooth)];
+/// The key of a number that has no other.
+const VALUE: &Key = &INPUT.keys[0];
 
 /// Names that were met, with where they stand and in which table.
 type Seen = Vec<(String, Range<usize>, &'static str)>;
@@ -46,14 +47,15 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Tables {
     let (computed, given): (Vec<Entry<'_>>, Vec<Entry<'_>>) =
         entries.iter().copied().partition(|(_, value)| is_computed(value, &names));
     let parameters = table(reader, &given, &mut seen, ("parameters", Owner::Parameter));
+    let parameters: Vec<Parameter> = parameters.into_iter().map(|(parameter, _)| parameter).collect();
     reader.parameters = parameters.iter().map(|p| p.name.clone()).collect();
     reader.values = parameters.iter().map(|p| p.value.clone()).collect();
     let derived = derived::read(reader, &computed);
     seen.extend(computed.iter().map(|(key, _)| (key.get_ref().to_string(), key.span(), "parameters")));
     let given = self::entries(reader, page, "inputs");
-    let inputs = table(reader, &given, &mut seen, ("inputs", Owner::Input));
+    let (inputs, between): (Vec<_>, Vec<_>) =
+        table(reader, &given, &mut seen, ("inputs", Owner::Input)).into_iter().unzip();
     reader.inputs = inputs.iter().map(|p| p.name.clone()).collect();
-    let between = given.iter().enumerate().map(|(index, entry)| between(reader, index, *entry)).collect();
     Tables { parameters, derived, inputs, between }
 }
 
@@ -66,8 +68,7 @@ fn is_computed(value: &Spanned<DeValue<'_>>, names: &[&str]) -> bool {
 /// The entries of a table in the order of the model file.
 fn entries<'t>(reader: &mut Reader<'_>, page: &Section<'t>, title: &'static str) -> Vec<Entry<'t>> {
     let Some(item) = page.get(title) else { return Vec::new() };
-    let example = format!("[{title}] on a line of its own, then name = number");
-    let Some(table) = item.table(reader, &example) else { return Vec::new() };
+    let Some(table) = item.table(reader) else { return Vec::new() };
     let mut entries: Vec<Entry<'t>> = table.iter().collect();
     entries.sort_by_key(|(key, _)| key.span().start);
     entries
@@ -78,7 +79,7 @@ fn table(
     entries: &[Entry<'_>],
     seen: &mut Seen,
     (title, owner): (&'static str, fn(usize) -> Owner),
-) -> Vec<Parameter> {
+) -> Vec<(Parameter, Between)> {
     let mut parameters = Vec::new();
     for (index, (key, value)) in entries.iter().enumerate() {
         let place = Place { owner: owner(index), key: "" };
@@ -87,10 +88,15 @@ fn table(
             reader.wrong(place, key.span(), own_field(key.get_ref()));
         }
         seen.push((key.get_ref().to_string(), key.span(), title));
-        parameters.push(match value.get_ref() {
-            DeValue::Table(table) if title == "inputs" => input(reader, place, (key, value), table),
-            _ => parameter(reader, place, key, value),
-        });
+        let name = name(reader, place, (key, value));
+        let (value, between) = match value.get_ref() {
+            DeValue::Table(table) if title == "inputs" => input(reader, place.owner, table),
+            _ => {
+                let place = Place { key: "value", ..place };
+                (plain_number(reader, Item { place, key: VALUE, value }), Between::default())
+            }
+        };
+        parameters.push((Parameter { name, value: value.unwrap_or_else(Rational::one) }, between));
     }
     parameters
 }
@@ -117,30 +123,15 @@ fn own_field(name: &str) -> [String; 3] {
     ]
 }
 
-fn parameter(
-    reader: &mut Reader<'_>,
-    place: Place,
-    key: &Spanned<DeString<'_>>,
-    value: &Spanned<DeValue<'_>>,
-) -> Parameter {
-    let name = name(reader, place, (key, value));
-    let value = plain_number(reader, Item { place: Place { key: "value", ..place }, value });
-    Parameter { name, value: value.unwrap_or_else(Rational::one) }
-}
-
-/// An input with more than its value.
-fn input(reader: &mut Reader<'_>, place: Place, entry: Entry<'_>, table: &DeTable<'_>) -> Parameter {
-    let name = name(reader, place, entry);
-    let section = Section::open(reader, place.owner, "an input", table, &["value", "between"]);
-    let value = section.require(reader, "value", "the input", "value = 0");
-    let value = value.and_then(|item| plain_number(reader, item));
-    Parameter { name, value: value.unwrap_or_else(Rational::one) }
-}
-
-fn between(reader: &mut Reader<'_>, index: usize, (_, value): Entry<'_>) -> Between {
-    let item = value.get_ref().as_table().and_then(|table| table.get("between"));
-    let item = item.map(|value| Item { place: Place { owner: Owner::Input(index), key: "between" }, value });
-    item.and_then(|item| item.choice(reader, ("word", &BETWEEN))).unwrap_or_default()
+/// Value of an input that has more, and what the input is between the rows of a table.
+fn input(reader: &mut Reader<'_>, owner: Owner, table: &DeTable<'_>) -> (Option<Rational>, Between) {
+    let section = Section::open(reader, owner, "the input", table, &INPUT);
+    let between = match section.word(reader, "between") {
+        Some("held") => Between::Held,
+        Some("smooth") => Between::Smooth,
+        _ => Between::Linear,
+    };
+    (section.plain(reader, "value"), between)
 }
 
 /// The name of an entry.

@@ -1,13 +1,10 @@
 //! Point masses of bodies: the model has each body with them as one, its frame at the mass centre of all.
 
-use toml::de::DeTable;
-
-use super::numbers::{number, vector};
 use super::reader::Reader;
 use super::section::Section;
-use super::tables;
+use crate::keys::POINT_MASS;
 use crate::validate::{Owner, Place};
-use crate::{Body, ForceKind, Model, Number};
+use crate::{Body, Model, Number};
 
 /// A mass and where it is in its body's frame.
 pub(super) type PointMass = (Number, [Number; 3]);
@@ -15,27 +12,20 @@ pub(super) type PointMass = (Number, [Number; 3]);
 type Vector = [Number; 3];
 
 /// Reads those of a body.
-pub(super) fn read(reader: &mut Reader<'_>, body: &Section<'_>, index: usize, title: &str) -> Vec<PointMass> {
-    let tables = tables::tables(reader, body, "point_mass");
-    let masses = tables.iter().enumerate().map(|(k, (span, table))| {
+pub(super) fn read(reader: &mut Reader<'_>, body: &Section<'_>, index: usize) -> Vec<PointMass> {
+    let tables = body.get("point_mass").map(|item| item.tables(reader)).unwrap_or_default();
+    let masses = tables.into_iter().enumerate().map(|(k, (item, table))| {
         let owner = Owner::PointMass(index, k);
-        reader.mark(Place { owner, key: "" }, span.clone());
-        one(reader, owner, title, table)
+        reader.mark(Place { owner, key: "" }, item.span());
+        let title = format!("a point mass of {}", body.title);
+        let section = Section::open(reader, owner, title, table, &POINT_MASS);
+        section.given(reader, "mass").zip(section.given_vector(reader, "at"))
     });
     let masses: Vec<_> = masses.collect();
     if reader.is_doubted(body.place("point_mass")) || masses.contains(&None) {
         ["mass", "inertia"].iter().for_each(|key| reader.doubt(body.place(key)));
     }
     masses.into_iter().flatten().collect()
-}
-
-fn one(reader: &mut Reader<'_>, owner: Owner, title: &str, table: &DeTable<'_>) -> Option<PointMass> {
-    let title = format!("a point mass of {title}");
-    let section = Section::open(reader, owner, &title, table, &["mass", "at"]);
-    let mass = section.require(reader, "mass", &title, "mass = ..., in kg");
-    let at = section.require(reader, "at", &title, "at = [0.1, 0, 0], in m");
-    let mass = mass.and_then(|item| number(reader, item));
-    mass.zip(at.and_then(|item| vector(reader, item)))
 }
 
 /// Makes one body of each and its point masses. All that is given in the body's frame moves to the new one.
@@ -120,15 +110,7 @@ fn points(model: &mut Model, body: usize) -> Vec<&mut Vector> {
     let of_shapes = model.bodies[body].shapes.iter_mut().map(|shape| &mut shape.position);
     let joints = model.joints.iter_mut().flat_map(|joint| [&mut joint.first, &mut joint.second]);
     let of_joints = joints.filter(|end| end.body == body).map(|end| &mut end.point);
-    let of_forces = model.forces.iter_mut().flat_map(|force| match &mut force.kind {
-        ForceKind::Link { first, second, .. } => vec![(first.0, &mut first.1), (second.0, &mut second.1)],
-        ForceKind::Load { body, point, .. } => vec![(*body, point)],
-        ForceKind::Spring { .. }
-        | ForceKind::Damper { .. }
-        | ForceKind::Coulomb { .. }
-        | ForceKind::Stop { .. }
-        | ForceKind::Motor { .. } => Vec::new(),
-    });
+    let of_forces = model.forces.iter_mut().flat_map(|force| force.kind.points_mut());
     let of_outputs = model.outputs.iter_mut().filter_map(|output| output.kind.frame_mut());
     let of_outputs = of_outputs.map(|frame| (frame.body, &mut frame.point));
     let others = of_forces.chain(of_outputs).filter(|(of, _)| *of == body).map(|(_, point)| point);

@@ -27,23 +27,12 @@ pub(super) struct Reader<'t> {
     pub(super) derived: Vec<(String, Number)>,
     /// Names of the model file's inputs; forces may refer to them.
     pub(super) inputs: Vec<String>,
-    /// Names of the model file's bodies; joints refer to them.
-    pub(super) bodies: Vec<Option<String>>,
-    /// Names and kinds of the model file's joints; couplers, drivers, forces and outputs refer to them.
-    pub(super) joints: Vec<NamedJoint>,
-    /// Names of the model file's drivers; outputs refer to them.
-    pub(super) drivers: Vec<Option<String>>,
-    /// Names of its couplers, for the same.
-    pub(super) couplers: Vec<Option<String>>,
+    /// Names of the model file's bodies, joints and so on, by what they are, as far as it states them correctly.
+    pub(super) names: HashMap<&'static str, Vec<Option<String>>>,
+    /// Kinds of its joints, likewise.
+    pub(super) joint_kinds: Vec<Option<JointKind>>,
     /// Names of joints, couplers, drivers and outputs so far, with their places and what they are.
     taken: HashMap<String, (Range<usize>, &'static str)>,
-}
-
-/// What others need to know of a joint to refer to it, as far as the model file states it correctly.
-#[derive(Clone, Debug)]
-pub(super) struct NamedJoint {
-    pub(super) name: Option<String>,
-    pub(super) kind: Option<JointKind>,
 }
 
 struct Mistake {
@@ -73,10 +62,8 @@ impl<'t> Reader<'t> {
             values: Vec::new(),
             derived: Vec::new(),
             inputs: Vec::new(),
-            bodies: Vec::new(),
-            joints: Vec::new(),
-            drivers: Vec::new(),
-            couplers: Vec::new(),
+            names: HashMap::new(),
+            joint_kinds: Vec::new(),
             taken: HashMap::new(),
         }
     }
@@ -99,6 +86,16 @@ impl<'t> Reader<'t> {
             self.clash(place, span.clone(), related, words);
         }
         self.taken.entry(name.to_owned()).or_insert_with(|| (span.clone(), what));
+    }
+
+    /// The names of all things of a kind.
+    pub(super) fn named(&self, what: &str) -> &[Option<String>] {
+        self.names.get(what).map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether there is a joint of this name.
+    pub(super) fn has_joint(&self, name: &str) -> bool {
+        self.named("joint").iter().any(|joint| joint.as_deref() == Some(name))
     }
 
     /// The text of a table.

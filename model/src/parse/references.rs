@@ -1,79 +1,49 @@
 //! Names that refer to other parts of the model file: bodies, joints and their coordinates, drivers.
 
 use super::names;
-use super::reader::{NamedJoint, Reader};
+use super::reader::Reader;
 use super::section::{Item, Section};
-use crate::{CoordinateKind, Force, JointCoordinate, JointKind};
+use crate::{CoordinateKind, JointCoordinate, JointKind};
 
 /// Stands for a thing that the model file does not name correctly: the mistake is reported, and nothing has this index.
 pub(super) const NOTHING: usize = usize::MAX;
 
-/// Index of the body that a section names under `body`.
-pub(super) fn body(reader: &mut Reader<'_>, section: &Section<'_>, title: &str) -> Option<usize> {
-    let known = reader.bodies.clone();
-    named(reader, section, "body", title, &known)
-}
+/// Stands for a coordinate that the model file does not name correctly.
+pub(super) const NO_COORDINATE: JointCoordinate = JointCoordinate { joint: NOTHING, coordinate: 0 };
 
-/// Index of the joint that a section names under `joint`.
-pub(super) fn joint(reader: &mut Reader<'_>, section: &Section<'_>, title: &str) -> Option<usize> {
-    let known: Vec<Option<String>> = reader.joints.iter().map(|joint| joint.name.clone()).collect();
-    named(reader, section, "joint", title, &known)
-}
-
-/// Index of the driver that a section names under `driver`.
-pub(super) fn driver(reader: &mut Reader<'_>, section: &Section<'_>, title: &str) -> Option<usize> {
-    let known = reader.drivers.clone();
-    named(reader, section, "driver", title, &known)
-}
-
-/// Index of the coupler that a section names under `coupler`.
-pub(super) fn coupler(reader: &mut Reader<'_>, section: &Section<'_>, title: &str) -> Option<usize> {
-    let known = reader.couplers.clone();
-    named(reader, section, "coupler", title, &known)
-}
-
-/// Index of the force that a section names under `force`.
-pub(super) fn force(
-    reader: &mut Reader<'_>,
-    section: &Section<'_>,
-    title: &str,
-    forces: &[Force],
-) -> Option<usize> {
-    let known: Vec<_> = forces.iter().map(|force| Some(force.name.clone())).collect();
-    named(reader, section, "force", title, &known)
+/// Index of the thing that a section names, among those of its kind. `what` is both the key and the word for it.
+pub(super) fn index(reader: &mut Reader<'_>, section: &Section<'_>, what: &'static str) -> usize {
+    named(reader, section, what).unwrap_or(NOTHING)
 }
 
 /// The coordinate that a section names under `joint` and, where the joint has several, `coordinate`.
-pub(super) fn coordinate(
-    reader: &mut Reader<'_>,
-    section: &Section<'_>,
-    title: &str,
-) -> Option<JointCoordinate> {
-    let found = coordinate_of(reader, section, title);
+pub(super) fn coordinate(reader: &mut Reader<'_>, section: &Section<'_>) -> JointCoordinate {
+    let found = coordinate_of(reader, section);
     if found.is_none() {
         reader.doubt(section.place("joint"));
     }
-    found
+    found.unwrap_or(NO_COORDINATE)
 }
 
-fn coordinate_of(reader: &mut Reader<'_>, section: &Section<'_>, title: &str) -> Option<JointCoordinate> {
-    let index = joint(reader, section, title)?;
-    let NamedJoint { name: Some(name), kind: Some(kind) } = reader.joints[index].clone() else { return None };
+fn coordinate_of(reader: &mut Reader<'_>, section: &Section<'_>) -> Option<JointCoordinate> {
+    let index = named(reader, section, "joint")?;
+    let (name, kind) = (reader.named("joint")[index].clone()?, reader.joint_kinds[index]?);
     let coordinates = kind.coordinates();
     if coordinates.is_empty() {
         no_coordinate(reader, section, &name, kind);
         return None;
     }
     let names: Vec<&str> = coordinates.iter().map(|c| c.name()).collect();
-    let Some(item) = section.get("coordinate") else {
+    if !section.has("coordinate") {
         if let [_] = coordinates {
             return Some(JointCoordinate { joint: index, coordinate: 0 });
         }
         let example = format!("coordinate = {:?} (or {})", names[0], names::list(&names[1..]));
-        section.require(reader, "coordinate", title, &example);
+        section.require_as(reader, "coordinate", &example);
         return None;
-    };
-    let written = item.text(reader, &format!("coordinate = {:?}", names[0]))?;
+    }
+    let item = section.get("coordinate")?;
+    let written = item.text(reader)?;
     let coordinate = names.iter().position(|name| *name == written);
     if coordinate.is_none() {
         item.wrong(reader, unknown_coordinate(&name, coordinates, written));
@@ -108,28 +78,21 @@ fn no_coordinate(reader: &mut Reader<'_>, section: &Section<'_>, name: &str, kin
     item.wrong(reader, words);
 }
 
-/// Index of a thing among those of its kind. `what` is both the key and the word for it.
-fn named(
-    reader: &mut Reader<'_>,
-    section: &Section<'_>,
-    what: &'static str,
-    title: &str,
-    known: &[Option<String>],
-) -> Option<usize> {
-    let example = format!("{what} = \"...\", the name of a [[{what}]]");
-    let item = section.require(reader, what, title, &example)?;
-    let name = item.text(reader, &example)?;
-    let index = known.iter().position(|other| other.as_deref() == Some(name));
+fn named(reader: &mut Reader<'_>, section: &Section<'_>, what: &'static str) -> Option<usize> {
+    let item = section.find(reader, what)?;
+    let name = item.text(reader)?;
+    let index = reader.named(what).iter().position(|other| other.as_deref() == Some(name));
     if index.is_none() {
-        nothing_named(reader, item, name, known);
+        nothing_named(reader, item, name);
     }
     index
 }
 
 /// Reports a thing that is not there, unless it may be one whose own name is missing.
-fn nothing_named(reader: &mut Reader<'_>, item: Item<'_>, name: &str, known: &[Option<String>]) {
-    let what = item.key();
-    let Some(known) = known.iter().map(Option::as_deref).collect::<Option<Vec<&str>>>() else {
+fn nothing_named(reader: &mut Reader<'_>, item: Item<'_>, name: &str) {
+    let what = item.key.name;
+    let known = reader.named(what).iter().map(Option::as_deref).collect::<Option<Vec<&str>>>();
+    let Some(known) = known else {
         reader.doubt(item.place);
         return;
     };

@@ -1,4 +1,4 @@
-//! A table of the model file with its known keys; every other key is reported.
+//! A table of the model file with the keys that it may have: every other key is reported.
 
 use std::ops::Range;
 
@@ -7,124 +7,278 @@ use toml::de::{DeString, DeTable, DeValue};
 
 use super::reader::Reader;
 use super::{names, synonyms};
+use crate::keys::{Key, Kind, Table, Value};
 use crate::validate::{Owner, Place};
 
-/// A table with the keys that it may have.
-#[derive(Clone, Copy)]
+/// A table of the model file.
 pub(super) struct Section<'t> {
     pub(super) owner: Owner,
+    /// What it is called in messages.
+    pub(super) title: String,
+    pub(super) keys: &'static Table,
+    /// Its kind, once that is read.
+    pub(super) kind: Option<&'static Kind>,
     table: &'t DeTable<'t>,
+    /// Where what is missing is reported, of a table inside a value.
+    whole: Option<Item<'t>>,
 }
-
-/// What the words are, and the words with their meanings, the commonest first.
-pub(super) type Choice<'c, T> = (&'c str, &'c [(&'static str, T)]);
 
 /// The value of a key.
 #[derive(Clone, Copy)]
 pub(super) struct Item<'t> {
     pub(super) place: Place,
+    pub(super) key: &'static Key,
     pub(super) value: &'t Spanned<DeValue<'t>>,
 }
 
 impl<'t> Section<'t> {
-    /// Marks the places of all known keys and reports the unknown ones. `title` says what the table is.
+    /// Marks the places of all known keys and reports the unknown ones.
     pub(super) fn open(
         reader: &mut Reader<'_>,
         owner: Owner,
-        title: &str,
+        title: impl Into<String>,
         table: &'t DeTable<'t>,
-        known: &[&'static str],
+        keys: &'static Table,
     ) -> Self {
+        let section = Self { owner, title: title.into(), keys, kind: None, table, whole: None };
+        let known = keys.all();
         for (key, value) in table {
             let written = key.get_ref().as_ref();
-            let former_of = |name: &&&'static str| former(owner, name) == Some(written);
-            match known.iter().find(|name| **name == written).or_else(|| known.iter().find(former_of)) {
-                Some(name) => reader.mark(Place { owner, key: name }, value.span()),
-                None => unknown_key(reader, (owner, title), key, known, table),
+            let former = known.iter().find(|known| known.former == written);
+            match known.iter().find(|known| known.name == written).or(former) {
+                Some(known) => reader.mark(section.place(known.name), value.span()),
+                None => section.unknown(reader, key, &known),
             }
-            if let Some(name) = known.iter().find(former_of) {
-                former_key(reader, (Place { owner, key: name }, title), key, table);
+            if let Some(known) = former {
+                section.former(reader, key, known);
             }
         }
-        Self { owner, table }
+        section
     }
 
-    /// What the section is, with its article.
-    fn noun(&self) -> &'static str {
-        match self.owner {
-            Owner::Force(_) => "a force",
-            Owner::Output(_) => "an output",
-            Owner::Controller(_) => "a controller",
-            Owner::Event(_) => "an event",
-            Owner::Contact(_) => "a contact",
-            _ => "something",
+    /// The table of an item. It has its place: what it lacks is reported there.
+    pub(super) fn within(
+        reader: &mut Reader<'_>,
+        item: Item<'t>,
+        title: impl Into<String>,
+        keys: &'static Table,
+    ) -> Option<Self> {
+        let table = item.table(reader)?;
+        Some(Self { whole: Some(item), ..Self::open(reader, item.place.owner, title, table, keys) })
+    }
+
+    /// The table under a key, with a place of its own.
+    pub(super) fn inner(
+        &self,
+        reader: &mut Reader<'_>,
+        key: &'static str,
+        (owner, title): (Owner, &str),
+    ) -> Option<Self> {
+        let item = self.find(reader, key)?;
+        let Value::Table(keys) = item.key.value else { return None };
+        let table = item.table(reader)?;
+        reader.mark(Place { owner, key: "" }, item.span());
+        Some(Self::open(reader, owner, title, table, keys))
+    }
+
+    /// Reads which of the table's kinds it is and refuses keys of others: with `cure` it says what to do about a key.
+    ///
+    /// Where another kind has all the keys that are there it is the kind that was meant, and nothing is asked of the
+    /// one that is written.
+    pub(super) fn read_kind(
+        &mut self,
+        reader: &mut Reader<'_>,
+        cure: fn(&Kind, &str) -> Option<String>,
+    ) -> Option<&'static Kind> {
+        let item = self.find(reader, "kind")?;
+        let own = item.kind(reader, self.keys)?;
+        self.kind = Some(own);
+        let is_common = |key: &Key| self.keys.keys.iter().any(|common| common.name == key.name);
+        let all = self.keys.all();
+        let mut written = all.into_iter().filter(|key| !is_common(key) && self.has(key.name));
+        let fits = |kind: &Kind| written.clone().all(|key| kind.key(key.name).is_some());
+        if fits(own) {
+            return Some(own);
         }
+        let other = self.keys.kinds.iter().find(|kind| fits(kind));
+        for key in written.by_ref().filter(|key| own.key(key.name).is_none()) {
+            let help = match (cure(own, key.name), other, own.keys) {
+                (Some(help), ..) => help,
+                (None, Some(other), _) => format!("write kind = {:?}, which has these keys", other.word),
+                (None, None, []) => "remove it: it has no keys of its own".to_owned(),
+                (None, None, own) => format!("remove it: its keys are {}", names::list(&called(own))),
+            };
+            let message = format!("{} takes no `{}`", self.kind_noun(own), key.name);
+            self.refuse(reader, key.name, &message, &help);
+        }
+        if other.is_some() {
+            own.keys.iter().for_each(|key| reader.doubt(self.place(key.name)));
+        }
+        Some(own)
+    }
+
+    /// One of the kind, in words.
+    pub(super) fn kind_noun(&self, kind: &Kind) -> String {
+        match (self.owner, kind.word) {
+            (Owner::Joint(_), "rod") => "a rod".to_owned(),
+            (Owner::Joint(_), word) => format!("a {word} joint"),
+            (_, word) => format!("{} of kind \"{word}\"", self.keys.noun()),
+        }
+    }
+
+    /// Whether it has no keys but those that it may have.
+    pub(super) fn is_known(&self) -> bool {
+        let known = self.keys.all();
+        self.table.keys().all(|key| known.iter().any(|known| known.name == key.get_ref().as_ref()))
     }
 
     pub(super) fn place(&self, key: &'static str) -> Place {
         Place { owner: self.owner, key }
     }
 
-    pub(super) fn get(&self, key: &'static str) -> Option<Item<'t>> {
-        let value = self.table.get(key).or_else(|| self.table.get(former(self.owner, key)?));
-        value.map(|value| Item { place: self.place(key), value })
+    /// The row of a key in the table of keys: the kind's own, or else that of any kind.
+    pub(super) fn key(&self, name: &str) -> &'static Key {
+        let own = self.keys.keys.iter().chain(self.kind.iter().flat_map(|kind| kind.keys));
+        let others = self.keys.kinds.iter().flat_map(|kind| kind.keys);
+        own.chain(others).find(|key| key.name == name).expect("what is asked for is in the table of keys")
     }
 
-    pub(super) fn has(&self, key: &'static str) -> bool {
-        self.get(key).is_some()
+    pub(super) fn get(&self, name: &'static str) -> Option<Item<'t>> {
+        let key = self.key(name);
+        let value = self.table.get(name).or_else(|| self.table.get(key.former));
+        value.map(|value| Item { place: self.place(name), key, value })
     }
 
-    /// The value of a key that must be there; `title` says what should have it and `example` what to write.
-    pub(super) fn require(
+    pub(super) fn has(&self, name: &'static str) -> bool {
+        self.get(name).is_some()
+    }
+
+    /// The value of a key; reports that it is missing where it is required.
+    pub(super) fn find(&self, reader: &mut Reader<'_>, name: &'static str) -> Option<Item<'t>> {
+        if self.key(name).is_required { self.require(reader, name) } else { self.get(name) }
+    }
+
+    /// The value of a key that must be there.
+    pub(super) fn require(&self, reader: &mut Reader<'_>, name: &'static str) -> Option<Item<'t>> {
+        let cure = match self.key(name) {
+            Key { value: Value::Kind, .. } => {
+                let words: Vec<&str> = self.keys.kinds.iter().map(|kind| kind.word).collect();
+                choice_example(name, &words)
+            }
+            key => cure(key),
+        };
+        self.require_as(reader, name, &cure)
+    }
+
+    /// The same with what to write.
+    pub(super) fn require_as(
         &self,
         reader: &mut Reader<'_>,
-        key: &'static str,
-        title: &str,
-        example: &str,
+        name: &'static str,
+        cure: &str,
     ) -> Option<Item<'t>> {
-        let item = self.get(key);
-        if item.is_none() && !reader.is_doubted(self.place(key)) {
+        let (item, place) = (self.get(name), self.place(name));
+        if item.is_none() && !reader.is_doubted(place) {
+            let title = &self.title;
             let words =
-                [format!("{title} has no `{key}`"), format!("needs `{key}`"), format!("write {example}")];
-            reader.missing(self.place(key), words);
+                [format!("{title} has no `{name}`"), format!("needs `{name}`"), format!("write {cure}")];
+            match self.whole {
+                Some(whole) => reader.missing_at(whole.place, whole.span(), words),
+                None => reader.missing(place, words),
+            }
         }
         item
-    }
-
-    /// The same of a table inside a value, such as one of several motions: what is missing is reported there.
-    pub(super) fn require_within(
-        &self,
-        reader: &mut Reader<'_>,
-        whole: Item<'_>,
-        key: &'static str,
-        (title, example): (&str, &str),
-    ) -> Option<Item<'t>> {
-        let item = self.get(key);
-        if item.is_none() && !reader.is_doubted(self.place(key)) {
-            let words =
-                [format!("{title} has no `{key}`"), format!("needs `{key}`"), format!("write {example}")];
-            reader.missing_at(whole.place, whole.span(), words);
-        }
-        item
-    }
-
-    /// One of some words under a key that must be there; see [`Item::choice`].
-    pub(super) fn require_choice<T: Copy>(
-        &self,
-        reader: &mut Reader<'_>,
-        key: &'static str,
-        title: &str,
-        choice: Choice<'_, T>,
-    ) -> Option<T> {
-        let item = self.require(reader, key, title, &choice_example(key, choice.1))?;
-        item.choice(reader, choice)
     }
 
     /// Refuses a key that is known but out of place here.
-    pub(super) fn refuse(&self, reader: &mut Reader<'_>, key: &'static str, message: &str, help: &str) {
-        if let Some(item) = self.get(key) {
+    pub(super) fn refuse(&self, reader: &mut Reader<'_>, name: &'static str, message: &str, help: &str) {
+        if let Some(item) = self.get(name) {
             item.wrong(reader, [message.to_owned(), "not allowed here".to_owned(), help.to_owned()]);
         }
+    }
+
+    /// Of two keys that say the same the one that is there; where both are, the second is refused.
+    pub(super) fn either(
+        &self,
+        reader: &mut Reader<'_>,
+        [kept, other]: [&'static str; 2],
+        message: &str,
+    ) -> Option<Item<'t>> {
+        if self.has(kept) {
+            self.refuse(reader, other, message, &format!("remove `{kept}` or `{other}`"));
+        }
+        self.get(kept).or_else(|| self.get(other))
+    }
+
+    /// A boolean, which has a default.
+    pub(super) fn flag(&self, reader: &mut Reader<'_>, name: &'static str) -> bool {
+        let default = self.key(name).default == "true";
+        self.get(name).and_then(|item| item.flag(reader)).unwrap_or(default)
+    }
+
+    /// One of the key's words.
+    pub(super) fn word(&self, reader: &mut Reader<'_>, name: &'static str) -> Option<&'static str> {
+        let item = self.find(reader, name)?;
+        item.word(reader)
+    }
+
+    /// Remarks on a key that is written by its former name, or refuses it beside the present one.
+    fn former(&self, reader: &mut Reader<'_>, written: &Spanned<DeString<'_>>, key: &'static Key) {
+        let (span, written, name, title) = (written.span(), written.get_ref(), key.name, &self.title);
+        if self.table.contains_key(name) {
+            let message = format!("`{written}` is the former name of `{name}`, which {title} has, too");
+            reader.wrong(self.place(name), span, [message, "given twice".to_owned(), "remove it".to_owned()]);
+        } else {
+            reader.remarks.push(format!("`{written}` of {title} is `{name}` now: write {name} = ..."));
+        }
+    }
+
+    fn unknown(&self, reader: &mut Reader<'_>, key: &Spanned<DeString<'_>>, known: &[&'static Key]) {
+        let (written, title) = (key.get_ref(), &self.title);
+        let known = called(known.iter().copied());
+        let elsewhere = synonyms::elsewhere(written, &known);
+        let meant = names::meant(written, &known).filter(|_| elsewhere.is_none());
+        let nearest = meant.and_then(|name| known.iter().copied().find(|known| *known == name));
+        let help = match (elsewhere, nearest) {
+            (Some(help), _) => help.to_owned(),
+            (None, Some(name)) if self.table.contains_key(name) => {
+                format!("remove it: there is `{name}` already")
+            }
+            (None, Some(name)) => format!("write `{name}`"),
+            (None, None) => format!("its keys are {}", names::list(&known)),
+        };
+        if let Some(name) = nearest {
+            // The key that was meant is not reported as missing, too.
+            reader.doubt(self.place(name));
+        }
+        let words = [format!("unknown key `{written}` in {title}"), "not a valid key".to_owned(), help];
+        reader.unknown(key.span(), words);
+    }
+}
+
+/// All of some things, where none is missing; each is asked for, so that all mistakes are found.
+pub(super) fn all<T>(things: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+    things.collect::<Vec<_>>().into_iter().collect()
+}
+
+/// The names of keys.
+fn called(keys: impl IntoIterator<Item = &'static Key>) -> Vec<&'static str> {
+    keys.into_iter().map(|key| key.name).collect()
+}
+
+/// What to write under a key.
+pub(super) fn cure(key: &Key) -> String {
+    let name = key.name;
+    match key.value {
+        _ if !key.example.is_empty() => key.example.to_owned(),
+        Value::Word(words) => choice_example(name, &words.iter().map(|(word, _)| *word).collect::<Vec<_>>()),
+        Value::Reference => format!("{name} = \"...\", the name of a [[{name}]]"),
+        Value::Flag => format!("{name} = true"),
+        Value::Text => format!("{name} = \"...\""),
+        Value::Name => format!("{name} = \"some_name\""),
+        Value::Table(table) => format!("{name} = {{ {} = \"...\" }}", table.keys[0].name),
+        Value::Tables(_) => format!("[[{name}]] on a line of its own above each {}", name.replace('_', " ")),
+        _ => key.cure(),
     }
 }
 
@@ -133,59 +287,112 @@ impl<'t> Item<'t> {
         self.value.span()
     }
 
-    pub(super) fn key(&self) -> &'static str {
-        self.place.key
-    }
-
     pub(super) fn wrong(&self, reader: &mut Reader<'_>, words: [String; 3]) {
         reader.wrong(self.place, self.span(), words);
     }
 
     /// Reports that something of another type was expected.
-    pub(super) fn wrong_type(&self, reader: &mut Reader<'_>, expected: &str, example: &str) {
-        self.wrong_type_with(reader, expected, format!("write {example}"));
+    pub(super) fn wrong_type(&self, reader: &mut Reader<'_>, expected: &str) {
+        self.wrong_type_with(reader, expected, format!("write {}", cure(self.key)));
     }
 
     /// The same with another cure.
     pub(super) fn wrong_type_with(&self, reader: &mut Reader<'_>, expected: &str, help: String) {
         let words = [
-            format!("`{}` must be {expected}", self.key()),
+            format!("`{}` must be {expected}", self.key.name),
             format!("found {}", found(self.value.get_ref())),
             help,
         ];
         self.wrong(reader, words);
     }
 
-    pub(super) fn text(&self, reader: &mut Reader<'_>, example: &str) -> Option<&'t str> {
+    pub(super) fn text(&self, reader: &mut Reader<'_>) -> Option<&'t str> {
         let text = self.value.get_ref().as_str();
         if text.is_none() {
-            self.wrong_type(reader, "a string", example);
+            self.wrong_type(reader, "a string");
         }
         text
     }
 
-    pub(super) fn table(&self, reader: &mut Reader<'_>, example: &str) -> Option<&'t DeTable<'t>> {
-        let table = self.value.get_ref().as_table();
-        if table.is_none() {
-            self.wrong_type(reader, "a table", example);
-        }
-        table
+    /// The elements of an array; none of what is no array.
+    pub(super) fn elements(self) -> impl Iterator<Item = Self> + 't {
+        let elements = self.value.get_ref().as_array().into_iter().flat_map(|array| array.iter());
+        elements.map(move |value| Item { value, ..self })
     }
 
-    /// One of some words.
-    pub(super) fn choice<T: Copy>(&self, reader: &mut Reader<'_>, (what, known): Choice<'_, T>) -> Option<T> {
-        let written = self.text(reader, &choice_example(self.key(), known))?;
-        let found = known.iter().find(|(name, _)| *name == written).map(|(_, value)| *value);
+    /// An array of some texts, each with its place.
+    pub(super) fn texts(&self, reader: &mut Reader<'_>, expected: &str) -> Option<Vec<(Self, &'t str)>> {
+        let word = |value| Some((Item { value, ..*self }, value.get_ref().as_str()?));
+        let elements = self.value.get_ref().as_array();
+        let texts = elements.and_then(|elements| elements.iter().map(word).collect::<Option<Vec<_>>>());
+        if texts.is_none() {
+            self.wrong_type(reader, expected);
+        }
+        texts
+    }
+
+    pub(super) fn table(&self, reader: &mut Reader<'_>) -> Option<&'t DeTable<'t>> {
+        let value = self.value.get_ref();
+        match (value.as_table(), value.as_str(), self.key.value) {
+            (Some(_), ..) => {}
+            // A name alone is that of what the table names first.
+            (
+                None,
+                Some(text),
+                Value::Table(Table { keys: [Key { name, value: Value::Reference, .. }, ..], .. }),
+            ) => {
+                let help = format!("write {} = {{ {name} = {text:?} }}", self.key.name);
+                self.wrong_type_with(reader, "a table", help);
+            }
+            _ => self.wrong_type(reader, "a table"),
+        }
+        value.as_table()
+    }
+
+    /// The tables of an array.
+    pub(super) fn tables(&self, reader: &mut Reader<'_>) -> Vec<(Self, &'t DeTable<'t>)> {
+        if self.value.get_ref().as_array().is_none() {
+            self.wrong_type(reader, "an array of tables");
+        }
+        self.elements().filter_map(|item| Some((item, item.table(reader)?))).collect()
+    }
+
+    /// One of the key's words.
+    pub(super) fn word(&self, reader: &mut Reader<'_>) -> Option<&'static str> {
+        let Value::Word(words) = self.key.value else { return None };
+        let known: Vec<&'static str> = words.iter().map(|(word, _)| *word).collect();
+        let what = if matches!(self.key.name, "between" | "coordinates") { "word" } else { self.key.name };
+        self.one_of(reader, &known, (what, what))
+    }
+
+    /// One of a table's kinds.
+    fn kind(&self, reader: &mut Reader<'_>, table: &'static Table) -> Option<&'static Kind> {
+        let known: Vec<&'static str> = table.kinds.iter().map(|kind| kind.word).collect();
+        let word = self.one_of(reader, &known, (&format!("kind of {}", table.name), "kind"))?;
+        table.kind(word)
+    }
+
+    /// One of some words, of which it is said at length and in short what they are.
+    fn one_of(
+        &self,
+        reader: &mut Reader<'_>,
+        known: &[&'static str],
+        (what, word): (&str, &str),
+    ) -> Option<&'static str> {
+        let Some(written) = self.value.get_ref().as_str() else {
+            let help = format!("write {}", choice_example(self.key.name, known));
+            self.wrong_type_with(reader, "a string", help);
+            return None;
+        };
+        let found = known.iter().copied().find(|name| *name == written);
         if found.is_none() {
-            let known: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-            let list = names::list(&known);
-            let key = self.key();
-            let help = match (synonyms::no_kind(written, what), names::meant(written, &known)) {
+            let list = names::list(known);
+            let help = match (synonyms::no_kind(written, what), names::meant(written, known)) {
                 (Some(help), _) => help.to_owned(),
-                (None, Some(name)) => format!("write `{name}`; the {key}s are {list}"),
-                (None, None) => format!("the {key}s are {list}"),
+                (None, Some(name)) => format!("write `{name}`; the {word}s are {list}"),
+                (None, None) => format!("the {word}s are {list}"),
             };
-            self.wrong(reader, [format!("unknown {what} `{written}`"), format!("not a {key}"), help]);
+            self.wrong(reader, [format!("unknown {what} `{written}`"), format!("not a {word}"), help]);
         }
         found
     }
@@ -194,16 +401,16 @@ impl<'t> Item<'t> {
     pub(super) fn flag(&self, reader: &mut Reader<'_>) -> Option<bool> {
         let flag = self.value.get_ref().as_bool();
         if flag.is_none() {
-            self.wrong_type(reader, "true or false", &format!("{} = true", self.key()));
+            self.wrong_type(reader, "true or false");
         }
         flag
     }
 
     /// A name in `snake_case`.
     pub(super) fn name(&self, reader: &mut Reader<'_>) -> Option<&'t str> {
-        let name = self.text(reader, &format!("{} = \"some_name\"", self.key()))?;
+        let name = self.text(reader)?;
         if let Some(words) = unfit(name) {
-            reader.wrong(self.place, self.span(), words);
+            self.wrong(reader, words);
         }
         Some(name)
     }
@@ -242,9 +449,8 @@ pub(super) fn keyword(name: &str) -> [String; 3] {
 }
 
 /// A key with the first of some words, and the others.
-fn choice_example<T>(key: &str, known: &[(&'static str, T)]) -> String {
-    let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-    match names.as_slice() {
+fn choice_example(key: &str, known: &[&str]) -> String {
+    match known {
         [] => format!("{key} = \"...\""),
         [one] => format!("{key} = {one:?}"),
         [one, other] => format!("{key} = {one:?} (or `{other}`)"),
@@ -263,89 +469,4 @@ pub(super) fn found(value: &DeValue<'_>) -> String {
         DeValue::Array(elements) => format!("an array of {}", elements.len()),
         DeValue::Table(_) => "a table".to_owned(),
     }
-}
-
-/// The kinds of a section, each with its own keys. `name` and `kind` belong to all.
-pub(super) type Kinds<'k> = &'k [(&'static str, &'static [&'static str])];
-
-/// Refuses the keys that belong to other kinds of the same section.
-///
-/// Where another kind has all the keys that are there it is the kind that was meant, and nothing is asked of the one
-/// that is written.
-pub(super) fn refuse_others(
-    reader: &mut Reader<'_>,
-    section: &Section<'_>,
-    all: &[&'static str],
-    (kind, kinds): (&str, Kinds<'_>),
-) {
-    let own = kinds.iter().find(|(name, _)| *name == kind).map_or(&[][..], |(_, keys)| keys);
-    let is_kind_s = |key: &str, keys: &[&str]| matches!(key, "name" | "kind") || keys.contains(&key);
-    let written: Vec<&str> = all.iter().copied().filter(|key| section.has(key)).collect();
-    let fits = |keys: &[&str]| written.iter().all(|key| is_kind_s(key, keys));
-    if fits(own) {
-        return;
-    }
-    let other = kinds.iter().find(|(_, keys)| fits(keys)).map(|(name, _)| *name);
-    for key in all.iter().filter(|key| !is_kind_s(key, own) && section.has(key)) {
-        let help = match (other, own) {
-            (Some(other), _) => format!("write kind = {other:?}, which has these keys"),
-            (None, []) => "remove it: it has no keys of its own".to_owned(),
-            (None, own) => format!("remove it: its keys are {}", names::list(own)),
-        };
-        section.refuse(
-            reader,
-            key,
-            &format!("{} of kind \"{kind}\" takes no `{key}`", section.noun()),
-            &help,
-        );
-    }
-    if other.is_some() {
-        own.iter().for_each(|key| reader.doubt(section.place(key)));
-    }
-}
-
-/// The name that a key had before, under which it is still read.
-fn former(owner: Owner, key: &str) -> Option<&'static str> {
-    (matches!(owner, Owner::Joint(_)) && key == "damping").then_some("friction")
-}
-
-/// Remarks on a key that is written by its former name, or refuses it beside the present one.
-fn former_key(
-    reader: &mut Reader<'_>,
-    (place, title): (Place, &str),
-    key: &Spanned<DeString<'_>>,
-    table: &DeTable<'_>,
-) {
-    let (written, name) = (key.get_ref(), place.key);
-    if table.contains_key(name) {
-        let message = format!("`{written}` is the former name of `{name}`, which {title} has, too");
-        reader.wrong(place, key.span(), [message, "given twice".to_owned(), "remove it".to_owned()]);
-    } else {
-        reader.remarks.push(format!("`{written}` of {title} is `{name}` now: write {name} = ..."));
-    }
-}
-
-fn unknown_key(
-    reader: &mut Reader<'_>,
-    (owner, title): (Owner, &str),
-    key: &Spanned<DeString<'_>>,
-    known: &[&'static str],
-    table: &DeTable<'_>,
-) {
-    let written = key.get_ref();
-    let elsewhere = synonyms::elsewhere(written, known);
-    let meant = names::meant(written, known).filter(|_| elsewhere.is_none());
-    let nearest = meant.and_then(|name| known.iter().find(|k| **k == name));
-    let help = match (elsewhere, nearest) {
-        (Some(help), _) => help.to_owned(),
-        (None, Some(name)) if table.contains_key(*name) => format!("remove it: there is `{name}` already"),
-        (None, Some(name)) => format!("write `{name}`"),
-        (None, None) => format!("its keys are {}", names::list(known)),
-    };
-    if let Some(key) = nearest {
-        // The key that was meant is not reported as missing, too.
-        reader.doubt(Place { owner, key });
-    }
-    let words = [format!("unknown key `{written}` in {title}"), "not a valid key".to_owned(), help];
-    reader.unknown(key.span(), words);
 }

@@ -1,7 +1,7 @@
 //! Numbers of the mechanism that controllers and events see, by the names that they have in the table of a run.
 
 use super::names;
-use super::reader::{NamedJoint, Reader};
+use super::reader::Reader;
 use super::section::Item;
 use crate::controller::visible;
 use crate::{Output, Seen};
@@ -10,9 +10,9 @@ use crate::{Output, Seen};
 pub(super) type Known = Vec<(String, Seen)>;
 
 /// All there are.
-pub(super) fn known(joints: &[NamedJoint], outputs: &[Output]) -> Known {
-    let named = joints.iter().enumerate();
-    let named = named.filter_map(|(index, joint)| Some((index, joint.name.as_deref()?, joint.kind?)));
+pub(super) fn known(reader: &Reader<'_>, outputs: &[Output]) -> Known {
+    let joints = reader.named("joint").iter().zip(&reader.joint_kinds).enumerate();
+    let named = joints.filter_map(|(index, (name, kind))| Some((index, name.as_deref()?, (*kind)?)));
     visible(named, outputs)
 }
 
@@ -21,14 +21,14 @@ pub(super) fn named(reader: &mut Reader<'_>, item: Item<'_>, word: &str, known: 
     if let Some(place) = names::column(word, known.iter().map(|(name, _)| name.as_str())) {
         return Some(known[place].1);
     }
-    if reader.joints.iter().any(|joint| joint.name.is_none() || joint.kind.is_none()) {
+    if reader.named("joint").contains(&None) || reader.joint_kinds.contains(&None) {
         reader.doubt(item.place);
         return None;
     }
     let names: Vec<&str> = known.iter().map(|(name, _)| name.as_str()).collect();
     let parts: Vec<&str> =
         names.iter().copied().filter(|name| name.split(['.', ' ']).next() == Some(word)).collect();
-    let joint = reader.joints.iter().any(|joint| joint.name.as_deref() == Some(word));
+    let joint = reader.has_joint(word);
     let (message, label, help) = match (parts.as_slice(), names.as_slice()) {
         ([_, ..], _) => (
             format!("`{word}` is not one number"),

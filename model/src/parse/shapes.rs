@@ -2,14 +2,13 @@
 
 use super::numbers::{number, vector};
 use super::reader::Reader;
-use super::section::{Item, Section};
-use crate::validate::Owner;
+use super::section::{Item, Section, cure};
+use crate::keys::SHAPE;
+use crate::validate::{Owner, out_of_range};
 use crate::{Number, Rational, Shape, ShapeKind};
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Zero};
 
 const KINDS: [&str; 4] = ["box", "cylinder", "sphere", "mesh"];
-const KEYS: [&str; 8] = ["box", "cylinder", "sphere", "mesh", "scale", "color", "position", "orientation"];
-const EXAMPLE: &str = "[[body.shape]] on a line of its own, then box = [x, y, z], cylinder = [radius, length], sphere = radius or mesh = \"file.stl\"";
 
 /// The extensions of the files that can be drawn, in lower case.
 const MESHES: [&str; 3] = ["stl", "obj", "dae"];
@@ -44,29 +43,29 @@ const COLORS: &str = "\
 
 /// Reads the shapes of a body; `title` says which body it is.
 pub(super) fn read(reader: &mut Reader<'_>, body: usize, title: &str, item: Item<'_>) -> Vec<Shape> {
-    let Some(elements) = item.value.get_ref().as_array() else {
-        item.wrong_type(reader, "an array of tables", EXAMPLE);
-        return Vec::new();
-    };
-    let items = elements.iter().map(|value| Item { value, ..item }).enumerate();
-    items.filter_map(|(index, item)| shape(reader, Owner::Shape(body, index), title, item)).collect()
+    let tables = item.tables(reader).into_iter().enumerate();
+    let shapes = tables.map(|(index, (item, table))| {
+        let title = format!("a shape of {title}");
+        let section = Section::open(reader, Owner::Shape(body, index), title, table, &SHAPE);
+        shape(reader, &section, item)
+    });
+    shapes.collect::<Vec<_>>().into_iter().flatten().collect()
 }
 
-fn shape(reader: &mut Reader<'_>, owner: Owner, title: &str, item: Item<'_>) -> Option<Shape> {
-    let table = item.table(reader, EXAMPLE)?;
-    let section = Section::open(reader, owner, &format!("a shape of {title}"), table, &KEYS);
+fn shape(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_>) -> Option<Shape> {
+    let title = &section.title;
     let given: Vec<&'static str> = KINDS.into_iter().filter(|kind| section.has(kind)).collect();
     if given.len() != 1 {
         let words = match given[..] {
             [] => [
-                format!("a shape of {title} is neither box, cylinder, sphere nor mesh"),
+                format!("{title} is neither box, cylinder, sphere nor mesh"),
                 "needs one of the four".to_owned(),
                 "write sphere = 0.1, or box = [0.1, 0.1, 0.1], or cylinder = [0.1, 0.2]: lengths in m, of a cylinder \
                  radius and length; or mesh = \"file.stl\""
                     .to_owned(),
             ],
             _ => [
-                format!("a shape of {title} is {} at once", given.join(" and ")),
+                format!("{title} is {} at once", given.join(" and ")),
                 "is one of the four".to_owned(),
                 format!("remove `{}` or `{}`", given[0], given[1]),
             ],
@@ -85,26 +84,27 @@ fn shape(reader: &mut Reader<'_>, owner: Owner, title: &str, item: Item<'_>) -> 
         return None;
     }
     let kind = match given[0] {
-        "box" => ShapeKind::Box(sizes(reader, size)?),
-        "cylinder" => ShapeKind::Cylinder(sizes(reader, size)?),
+        "box" => ShapeKind::Box(sizes(reader, section, size)?),
+        "cylinder" => ShapeKind::Cylinder(sizes(reader, section, size)?),
         "mesh" => mesh(reader, size, scale)?,
-        _ => ShapeKind::Sphere(number(reader, size).filter(|radius| is_size(reader, size, radius))?),
+        _ => {
+            let radius = number(reader, size)?;
+            ShapeKind::Sphere(is_size(reader, section, size, &radius).then_some(radius)?)
+        }
     };
-    let position = section.vector_or(reader, "position", [0; 3]);
-    let orientation = section.vector_or(reader, "orientation", [1, 0, 0, 0]);
+    let position = section.vector(reader, "position");
+    let orientation = section.vector(reader, "orientation");
     let color = section.get("color").and_then(|item| color(reader, item));
     Some(Shape { kind, color, position, orientation })
 }
 
 /// A colour by its name in CSS, or as `#rrggbb`.
 fn color(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[u8; 3]> {
-    let example =
-        "color = \"steelblue\", or any other of the names that CSS has for colours, or color = \"#4682b4\"";
-    let text = item.text(reader, example)?;
+    let text = item.text(reader)?;
     let color = named(text);
     if color.is_none() {
-        let words =
-            [format!("the color {text:?} is none"), "not a colour".to_owned(), format!("write {example}")];
+        let help = format!("write {}", cure(item.key));
+        let words = [format!("the color {text:?} is none"), "not a colour".to_owned(), help];
         item.wrong(reader, words);
     }
     color
@@ -124,7 +124,7 @@ fn named(text: &str) -> Option<[u8; 3]> {
 }
 
 fn mesh(reader: &mut Reader<'_>, item: Item<'_>, scale_item: Option<Item<'_>>) -> Option<ShapeKind> {
-    let file = item.text(reader, "mesh = \"file.stl\"")?;
+    let file = item.text(reader)?;
     let extension = file.rsplit_once('.').map(|(_, extension)| extension.to_lowercase());
     if !extension.is_some_and(|extension| MESHES.contains(&extension.as_str())) {
         let message = format!("the mesh {file:?} is of no kind that can be drawn");
@@ -147,9 +147,13 @@ fn mesh(reader: &mut Reader<'_>, item: Item<'_>, scale_item: Option<Item<'_>>) -
     Some(ShapeKind::Mesh { file: file.to_owned(), scale })
 }
 
-fn sizes<const N: usize>(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number; N]> {
+fn sizes<const N: usize>(
+    reader: &mut Reader<'_>,
+    section: &Section<'_>,
+    item: Item<'_>,
+) -> Option<[Number; N]> {
     let sizes: [Number; N] = vector(reader, item)?;
-    sizes.iter().all(|size| is_size(reader, item, size)).then_some(sizes)
+    sizes.iter().all(|size| is_size(reader, section, item, size)).then_some(sizes)
 }
 
 fn is_zero(number: &Number) -> bool {
@@ -157,12 +161,10 @@ fn is_zero(number: &Number) -> bool {
 }
 
 /// Reports a size that is not positive. That of a parameter may become so; nothing is drawn then.
-fn is_size(reader: &mut Reader<'_>, item: Item<'_>, size: &Number) -> bool {
-    let is_good = !matches!(size, Number::Exact(value) if !value.is_positive());
-    if !is_good {
-        let message = format!("the size of a {} must be positive", item.key());
-        let help = "write lengths greater than 0, in m".to_owned();
-        item.wrong(reader, [message, "not a size".to_owned(), help]);
-    }
-    is_good
+fn is_size(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_>, size: &Number) -> bool {
+    let Number::Exact(size) = size else { return true };
+    let words = out_of_range(item.key, &section.title, size);
+    let is_size = words.is_none();
+    words.into_iter().for_each(|words| item.wrong(reader, words));
+    is_size
 }

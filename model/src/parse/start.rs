@@ -37,12 +37,13 @@ fn of_hanging(reader: &Reader<'_>, model: &Model, link: &Link, kind: JointKind) 
         keys.push(("orientation", "start the joint instead (`angle`, `orientation`), or write free = true"));
     }
     let written = keys.into_iter().filter(|(key, _)| reader.is_written(Place::body(link.body, key)));
-    let problem = |(key, help): (&'static str, &str)| Problem {
-        place: Place::body(link.body, key),
-        also: None,
-        message: format!("the {key} of body `{name}` follows from its joints"),
-        label: "not allowed here".to_owned(),
-        help: help.to_owned(),
+    let problem = |(key, help): (&'static str, &str)| {
+        Problem::new(
+            Place::body(link.body, key),
+            format!("the {key} of body `{name}` follows from its joints"),
+            "not allowed here",
+            help.to_owned(),
+        )
     };
     written.map(problem).collect()
 }
@@ -58,15 +59,14 @@ fn of_driven(reader: &Reader<'_>, model: &Model, index: usize, driver: &Driver) 
         keys.push("rate");
     }
     let written = keys.into_iter().filter(|key| reader.is_written(Place::joint(joint, key)));
-    let problem = |key| Problem {
-        place: Place::joint(joint, key),
-        also: Some((Place { owner: Owner::Driver(index), key: "" }, "driven here".to_owned())),
-        message: format!(
-            "the start of joint `{}` is given by driver `{}`",
-            model.joints[joint].name, driver.name
-        ),
-        label: "not allowed here".to_owned(),
-        help: format!("remove `{key}`: the driver's motion says where the joint starts and how fast"),
+    let problem = |key| {
+        Problem::new(
+            Place::joint(joint, key),
+            format!("the start of joint `{}` is given by driver `{}`", model.joints[joint].name, driver.name),
+            "not allowed here",
+            format!("remove `{key}`: the driver's motion says where the joint starts and how fast"),
+        )
+        .also(Place { owner: Owner::Driver(index), key: "" }, "driven here")
     };
     written.map(problem).collect()
 }
@@ -75,12 +75,11 @@ fn of_driven(reader: &Reader<'_>, model: &Model, index: usize, driver: &Driver) 
 pub(super) fn check(reader: &mut Reader<'_>, model: &mut Model) {
     match model.assemble().and_then(|_| analyse(model)) {
         Ok(analysis) => model.redundant = analysis.redundant,
-        Err(error) => reader.add_problems(vec![Problem {
-            place: error.place().unwrap_or(Place { owner: Owner::Page, key: "" }),
-            also: None,
-            message: error.to_string(),
-            label: "no consistent start".to_owned(),
-            help: error.help(),
-        }]),
+        Err(error) => reader.add_problems(vec![Problem::new(
+            error.place().unwrap_or(Place { owner: Owner::Page, key: "" }),
+            error.to_string(),
+            "no consistent start",
+            error.help(),
+        )]),
     }
 }

@@ -10,12 +10,9 @@ type Refusal = [String; 3];
 
 /// Reads the table that a motion names, through the caller's `load`.
 pub(super) fn read(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_>) -> Option<Motion> {
-    let is_smooth = match section.get("between") {
-        None => true,
-        Some(item) => item.choice(reader, ("way between rows", &[("smooth", true), ("linear", false)]))?,
-    };
+    let is_smooth = !section.has("between") || section.word(reader, "between")? == "smooth";
     let columns = section.get("columns").map(|item| columns(reader, item));
-    let path = item.text(reader, "table = \"file.csv\"")?;
+    let path = item.text(reader)?;
     let columns = match columns {
         Some(columns) => Some(columns?),
         None => None,
@@ -34,12 +31,11 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_
 }
 
 fn columns<'t>(reader: &mut Reader<'_>, item: Item<'t>) -> Option<[&'t str; 2]> {
-    let elements = item.value.get_ref().as_array();
-    let names: Option<Vec<&str>> =
-        elements.and_then(|elements| elements.iter().map(|e| e.get_ref().as_str()).collect());
-    let names = names.and_then(|names| <[&str; 2]>::try_from(names).ok());
+    const EXPECTED: &str = "an array of two names";
+    let names = item.texts(reader, EXPECTED)?;
+    let names = names.into_iter().map(|(_, name)| name).collect::<Vec<_>>().try_into().ok();
     if names.is_none() {
-        item.wrong_type(reader, "an array of two names", "columns = [\"t\", \"angle\"]: time and value");
+        item.wrong_type(reader, EXPECTED);
     }
     names
 }

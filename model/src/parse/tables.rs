@@ -8,45 +8,69 @@ use toml::de::DeTable;
 use super::reader::Reader;
 use super::section::{Item, Section};
 use crate::diagnostics::Related;
+use crate::keys::{Key, Table, Value};
 use crate::validate::{Owner, Place};
+use crate::{Contact, Event};
 
-/// The tables of `[[body]]`, `[[joint]]` and the like, with the span of each.
-pub(super) fn tables<'t>(
+/// What there may not be any number of, with what to do instead.
+const MOST: [(&str, usize, &str); 2] = [
+    ("event", Event::MOST, "leave some out, or look for them in the table of the run"),
+    (
+        "contact",
+        Contact::MOST,
+        "leave some out, or write them as [[force]] of kind \"stop\" and \"coulomb\", which are smooth",
+    ),
+];
+
+/// Opens all tables of `[[body]]`, `[[joint]]` and the like, each with the name of what it describes. Their names are
+/// with the reader before anything refers to them.
+pub(super) fn each<'t>(
     reader: &mut Reader<'_>,
     page: &Section<'t>,
-    key: &'static str,
-) -> Vec<(Range<usize>, &'t DeTable<'t>)> {
-    let Some(item) = page.get(key) else { return Vec::new() };
-    let within = if let Owner::Body(_) = page.owner { "body." } else { "" };
-    let example = format!("[[{within}{key}]] on a line of its own above each {}", key.replace('_', " "));
-    let Some(elements) = item.value.get_ref().as_array() else {
-        item.wrong_type(reader, "an array of tables", &example);
-        return Vec::new();
-    };
-    let mut tables = Vec::new();
-    for value in elements.iter() {
-        if let Some(table) = (Item { place: item.place, value }).table(reader, &example) {
-            tables.push((value.span(), table));
-        }
+    what: &'static str,
+    owner: fn(usize) -> Owner,
+) -> Vec<(Section<'t>, String)> {
+    let item = page.find(reader, what);
+    let Some(Item { key: &Key { value: Value::Tables(keys), .. }, .. }) = item else { return Vec::new() };
+    let tables: Vec<_> = item.map(|item| item.tables(reader)).unwrap_or_default();
+    let most = MOST.iter().find(|(of, ..)| *of == what);
+    if let Some((&(_, most, help), (item, _))) = most.and_then(|most| Some((most, tables.get(most.1)?))) {
+        let words = [
+            format!("a model has at most {most} {what}s"),
+            format!("there are {}", tables.len()),
+            help.to_owned(),
+        ];
+        reader.wrong(Place { owner: owner(most), key: "" }, item.span(), words);
     }
-    tables
+    if let (Some((first, _)), "body") = (tables.first(), what) {
+        reader.mark(page.place("body"), first.span());
+    }
+    let names = names(reader, &tables, owner, keys);
+    let named = tables.iter().zip(&names).enumerate().map(|(index, ((_, table), name))| {
+        let name = name.clone().unwrap_or_else(|| format!("{what} {}", index + 1));
+        (Section::open(reader, owner(index), format!("{what} `{name}`"), table, keys), name)
+    });
+    let sections = named.collect();
+    reader.names.insert(what, names);
+    sections
 }
 
 /// Reads the names of all things of a kind and reports those that are missing, repeated or not valid.
-pub(super) fn names(
+fn names(
     reader: &mut Reader<'_>,
-    tables: &[(Range<usize>, &DeTable<'_>)],
+    tables: &[(Item<'_>, &DeTable<'_>)],
     owner: fn(usize) -> Owner,
-    what: &'static str,
+    keys: &'static Table,
 ) -> Vec<Option<String>> {
+    let what = keys.name;
     let mut seen: Vec<(Option<String>, Range<usize>)> = Vec::new();
-    for (index, (header, table)) in tables.iter().enumerate() {
+    for (index, (item, table)) in tables.iter().enumerate() {
         let place = Place { owner: owner(index), key: "name" };
         let value = table.get("name");
-        let span = value.map_or(header.clone(), Spanned::span);
+        let span = value.map_or(item.span(), Spanned::span);
         reader.mark(Place { key: "", ..place }, span.clone());
         let name = match value {
-            Some(value) => Item { place, value }.name(reader),
+            Some(value) => Item { place, key: &keys.keys[0], value }.name(reader),
             None => no_name(reader, place, what, index),
         };
         let earlier = seen.iter().find(|(other, _)| name.is_some() && name == other.as_deref());

@@ -1,83 +1,61 @@
 //! Inertia tensors in their three forms.
 
-use toml::Spanned;
 use toml::de::DeValue;
 
-use super::numbers::{number, vector};
+use super::numbers::vector;
 use super::reader::Reader;
-use super::section::{Item, Section};
+use super::section::{Item, Section, all};
 use crate::Number;
+use crate::keys::ELEMENTS;
 
 /// An inertia tensor: `[xx, yy, zz]`, a table of its elements or a symmetric matrix.
 pub(super) fn tensor(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number; 6]> {
     match item.value.get_ref() {
         DeValue::Table(_) => tensor_of_elements(reader, item),
         DeValue::Array(rows) if !rows.is_empty() && rows.iter().all(|row| row.get_ref().is_array()) => {
-            tensor_of_rows(reader, item, rows)
+            tensor_of_rows(reader, item)
         }
         DeValue::Array(elements) if elements.len() == 3 => {
             let [xx, yy, zz] = vector(reader, item)?;
             Some([xx, yy, zz, Number::integer(0), Number::integer(0), Number::integer(0)])
         }
         _ => {
-            item.wrong_type(
+            item.wrong_type_with(
                 reader,
                 "three moments of inertia, a table of elements or a symmetric matrix",
-                "inertia = [xx, yy, zz], or a table of `xx`, `yy`, `zz`, `xy`, `xz`, `yz`, or three rows of three",
+                "write inertia = [xx, yy, zz], or a table of `xx`, `yy`, `zz`, `xy`, `xz`, `yz`, or three rows of three"
+                    .to_owned(),
             );
             None
         }
     }
 }
 
-const ELEMENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
-
 fn tensor_of_elements(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number; 6]> {
-    let table = item.value.get_ref().as_table()?;
     // The elements are marked under the body's own place: they are judged together, as its inertia.
-    let section = Section::open(reader, item.place.owner, "an inertia", table, &ELEMENTS);
-    let mut whole = true;
-    let elements = ELEMENTS.map(|key| match section.get(key) {
-        Some(element) => {
-            let number = number(reader, Item { place: element.place, value: element.value });
-            whole &= number.is_some();
-            number.unwrap_or_else(|| Number::integer(0))
-        }
-        None => {
-            if key.as_bytes()[0] == key.as_bytes()[1] {
-                whole = false;
-                let words = [
-                    format!("the inertia has no `{key}`"),
-                    format!("needs `{key}`"),
-                    format!("write {key} = ..."),
-                ];
-                reader.missing(item.place, words);
-            }
-            Number::integer(0)
-        }
+    let section = Section::within(reader, item, "the inertia", &ELEMENTS)?;
+    let elements = ["xx", "yy", "zz", "xy", "xz", "yz"].map(|key| {
+        let number = section.given(reader, key);
+        let may_lack = !section.has(key) && !section.key(key).is_required;
+        number.or(may_lack.then(|| Number::integer(0)))
     });
-    if !whole {
+    let [Some(xx), Some(yy), Some(zz), Some(xy), Some(xz), Some(yz)] = elements else {
         reader.doubt(item.place);
-    }
-    whole.then_some(elements)
+        return None;
+    };
+    Some([xx, yy, zz, xy, xz, yz])
 }
 
-fn tensor_of_rows(
-    reader: &mut Reader<'_>,
-    item: Item<'_>,
-    rows: &[Spanned<DeValue<'_>>],
-) -> Option<[Number; 6]> {
-    if rows.len() != 3 {
-        item.wrong_type(
+fn tensor_of_rows(reader: &mut Reader<'_>, item: Item<'_>) -> Option<[Number; 6]> {
+    if item.elements().count() != 3 {
+        item.wrong_type_with(
             reader,
             "a matrix of three rows of three numbers",
-            "[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]",
+            "write [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]".to_owned(),
         );
         return None;
     }
-    let rows: Vec<Option<[Number; 3]>> =
-        rows.iter().map(|value| vector(reader, Item { place: item.place, value })).collect();
-    let rows: Vec<[Number; 3]> = rows.into_iter().collect::<Option<_>>()?;
+    let rows: Vec<[Number; 3]> = all(item.elements().map(|row| vector(reader, row)))?;
     for (i, j) in [(0, 1), (0, 2), (1, 2)] {
         if rows[i][j] != rows[j][i] {
             let axes = ["x", "y", "z"];

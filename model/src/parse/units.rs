@@ -2,7 +2,7 @@
 
 use num_traits::ToPrimitive;
 
-use crate::validate::{Owner, Place};
+use crate::keys::{JOINT, Key, SINUSOID, Table, Value};
 use crate::{Rational, parse_decimal};
 
 /// π to more digits than any `f64` distinguishes, so that what is computed with it is rounded once.
@@ -13,13 +13,13 @@ pub(super) fn pi() -> Rational {
 }
 
 /// The message for a number that is written as a string with its unit; `None` for other strings.
-pub(super) fn with_unit(place: Place, text: &str) -> Option<[String; 3]> {
-    let key = place.key;
+pub(super) fn with_unit(key: &Key, text: &str) -> Option<[String; 3]> {
+    let name = key.name;
     let (number, unit) = split(text)?;
-    let expected = of_place(place);
+    let expected = key.unit();
     let message = match expected {
-        Some(expected) => format!("`{key}` must be a number in {expected}, without a unit"),
-        None => format!("`{key}` must be a number, without a unit"),
+        Some(expected) => format!("`{name}` must be a number in {expected}, without a unit"),
+        None => format!("`{name}` must be a number, without a unit"),
     };
     let in_base = known(unit).map(|(base, factor)| (base, &number * factor));
     let label = match &in_base {
@@ -28,8 +28,8 @@ pub(super) fn with_unit(place: Place, text: &str) -> Option<[String; 3]> {
     };
     let help = match (in_base, expected) {
         (Some((base, value)), Some(expected)) if expected.split(" or ").any(|unit| unit == base) => {
-            let in_degrees = if is_degrees(unit) && has_degrees(place) {
-                format!(", or {key}_deg = {}", plain(&number))
+            let in_degrees = if is_degrees(unit) && has_degrees(key) {
+                format!(", or {name}_deg = {}", plain(&number))
             } else {
                 String::new()
             };
@@ -61,48 +61,10 @@ fn is_degrees(unit: &str) -> bool {
     matches!(unit, "deg" | "°" | "degree" | "degrees")
 }
 
-fn has_degrees(Place { owner, key }: Place) -> bool {
-    match key {
-        "angle" | "first_angle" | "second_angle" => matches!(owner, Owner::Joint(_)),
-        _ => key == "phase",
-    }
-}
-
-/// The unit of the number at a place; none of one that may have any.
-pub(super) fn of_place(place: Place) -> Option<&'static str> {
-    match place.owner {
-        Owner::Parameter(_) | Owner::DerivedParameter(_) | Owner::Input(_) => None,
-        _ => of_key(place.key),
-    }
-}
-
-/// The unit of a key's number, or of the elements of its vector.
-fn of_key(key: &str) -> Option<&'static str> {
-    let unit = match key {
-        "gravity" => "m/s2",
-        "t_end" | "step" | "correct_every" | "sample_every" | "period" | "delay" => "s",
-        "mass" => "kg",
-        "inertia" | "xx" | "yy" | "zz" | "xy" | "xz" | "yz" => "kg.m2",
-        "position" | "point" | "at" | "displacement" | "x" | "y" | "length" | "free_length"
-        | "translation" => "m",
-        "velocity" => "m/s",
-        "angular_velocity" | "angular_frequency" => "rad/s",
-        "angle" | "first_angle" | "second_angle" | "phase" => "rad",
-        "angle_deg" | "first_angle_deg" | "second_angle_deg" | "phase_deg" => "degrees",
-        "frequency_hz" => "Hz",
-        "rate" => "rad/s or m/s",
-        "lead" => "m/rad",
-        "pitch" => "m a turn",
-        "armature" => "kg.m2 or kg",
-        "damping" => "N.m.s/rad or N.s/m",
-        "stiffness" => "N.m/rad or N/m",
-        "free" | "limit" | "softness" | "amplitude" | "motion" | "offset" => "rad or m",
-        "level" | "value" | "friction" | "static_friction" => "N.m or N",
-        "force" => "N",
-        "torque" => "N.m",
-        _ => return None,
-    };
-    Some(unit)
+/// Whether the angle has a second key in degrees.
+fn has_degrees(key: &Key) -> bool {
+    let degrees = |table: &Table| table.all().iter().any(|other| other.name == format!("{}_deg", key.name));
+    matches!(key.value, Value::Number("rad")) && [&JOINT, &SINUSOID].into_iter().any(degrees)
 }
 
 /// The SI unit of a known unit, and its size in it.
@@ -153,21 +115,23 @@ pub(super) fn shown(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::keys::{BODY, FORCE};
 
     #[test]
     fn units_are_told_and_converted() {
-        let place = |key| Place { owner: Owner::Joint(0), key };
-        let check = |key: &'static str, text: &str, expected: &str| {
-            let [_, _, help] = with_unit(place(key), text).unwrap_or_default();
-            assert_eq!(help, expected, "{key} = {text:?}");
+        let keys: Vec<&Key> = [&JOINT, &BODY, &FORCE].iter().flat_map(|table| table.all()).collect();
+        let key = |name: &str| *keys.iter().find(|key| key.name == name).expect("a key");
+        let check = |name: &str, text: &str, expected: &str| {
+            let [_, _, help] = with_unit(key(name), text).unwrap_or_default();
+            assert_eq!(help, expected, "{name} = {text:?}");
         };
         check("angle", "30 deg", "write 0.5235987755982989 in place of \"30 deg\", or angle_deg = 30");
         check("rate", "60rpm", "write 6.283185307179586 in place of \"60rpm\"");
         check("mass", "80 g", "write 0.08 in place of \"80 g\"");
         check("mass", "3 lb", "write the number alone, in kg");
         check("length", "2e3 mm", "write 2 in place of \"2e3 mm\"");
-        assert_eq!(with_unit(place("mass"), "rod_mass"), None);
-        assert_eq!(with_unit(place("mass"), "3"), None);
-        assert_eq!(with_unit(place("mass"), "é"), None);
+        assert_eq!(with_unit(key("mass"), "rod_mass"), None);
+        assert_eq!(with_unit(key("mass"), "3"), None);
+        assert_eq!(with_unit(key("mass"), "é"), None);
     }
 }

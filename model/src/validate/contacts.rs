@@ -10,7 +10,7 @@ pub(super) fn problems(model: &Model, index: usize, contact: &Contact) -> Vec<Pr
     let mut found = Vec::new();
     let mut wrong = |key, message: String, label: String, help: &str| {
         let place = Place { owner: Owner::Contact(index), key };
-        found.push(Problem { place, also: None, message, label, help: help.to_owned() });
+        found.push(Problem::new(place, message, label, help.to_owned()));
     };
     let name = &contact.name;
     if let [Some(lower), Some(upper)] =
@@ -27,32 +27,22 @@ pub(super) fn problems(model: &Model, index: usize, contact: &Contact) -> Vec<Pr
         let help = "write the part of its rate with which the joint rebounds: 0 for none, 1 for all";
         wrong("restitution", message, shown(&restitution), help);
     }
-    let levels = ("friction", ["friction", "static_friction"], "its level, 0 or more, in N.m or N");
-    let coefficients = (
-        "coefficient of friction",
-        ["friction_coefficient", "static_friction_coefficient"],
-        "the coefficient, 0 or more",
-    );
-    for (numbers, (what, [key, static_key], example)) in
-        [(&contact.levels, levels), (&contact.coefficients, coefficients)]
-    {
+    for (numbers, what, [key, static_key]) in [
+        (&contact.levels, "friction", ["friction", "static_friction"]),
+        (
+            &contact.coefficients,
+            "coefficient of friction",
+            ["friction_coefficient", "static_friction_coefficient"],
+        ),
+    ] {
         let [kinetic, at_rest] = numbers.each_ref().map(|number| model.exact(number));
-        if kinetic.is_negative() {
-            let message = format!("the {what} of contact `{name}` is negative");
-            wrong(key, message, shown(&kinetic), &format!("write {example}"));
-        } else if at_rest < &kinetic * (Rational::one() - rounded()) {
+        if !kinetic.is_negative() && at_rest < &kinetic * (Rational::one() - rounded()) {
             let message = format!("the static {what} of contact `{name}` is less than the kinetic one");
             let label = format!("{}, less than {}", shown(&at_rest), shown(&kinetic));
             let help =
                 format!("write a number that is not below `{key}`, or leave it out: it is then the same");
             wrong(static_key, message, label, &help);
         }
-    }
-    if let Some(radius) = contact.radius.as_ref().map(|radius| model.exact(radius))
-        && !radius.is_positive()
-    {
-        let message = format!("the radius of contact `{name}` is not positive");
-        wrong("radius", message, shown(&radius), "write the radius of the bearing, greater than 0, in m");
     }
     found
 }

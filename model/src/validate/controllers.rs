@@ -1,16 +1,16 @@
 //! Numbers of controllers, and what they may set inputs to.
 
-use num_traits::{Signed, Zero};
+use num_traits::Zero;
 
 use super::{Owner, Place, Problem, shown};
-use crate::{Controller, Law, Model, Number, Rational};
+use crate::{Controller, Law, Model, Rational};
 
 /// Numbers that make no law.
 pub(super) fn problems(model: &Model, index: usize, controller: &Controller) -> Vec<Problem> {
     let mut found = Vec::new();
     let mut wrong = |key, message: String, label: String, help: &str| {
         let place = Place { owner: Owner::Controller(index), key };
-        found.push(Problem { place, also: None, message, label, help: help.to_owned() });
+        found.push(Problem::new(place, message, label, help.to_owned()));
     };
     let name = &controller.name;
     if let Law::TransferFunction { denominator, .. } = &controller.law
@@ -28,18 +28,6 @@ pub(super) fn problems(model: &Model, index: usize, controller: &Controller) -> 
         let message = format!("the limits of controller `{name}` leave nothing between them");
         wrong("limits", message, label, "write the smaller one first: limits = [-1, 1]");
     }
-    let is_negative = |step: &&Number| model.exact(step).is_negative();
-    let steps = [
-        ("output_step", controller.output_steps.iter().find(is_negative)),
-        ("input_step", Some(&controller.input_step).filter(is_negative)),
-    ];
-    for (key, step) in steps {
-        if let Some(step) = step {
-            let label = shown(&model.exact(step));
-            let help = "write the size of a step of the converter, or 0 for none";
-            wrong(key, format!("the `{key}` of controller `{name}` is negative"), label, help);
-        }
-    }
     found
 }
 
@@ -56,15 +44,12 @@ pub(crate) fn settings_problems(model: &Model) -> Vec<Problem> {
             if let Some(words) = refusal {
                 let place = Place { owner: Owner::Controller(index), key: "inputs" };
                 let (name, input) = (&controller.name, &model.inputs[*input].name);
-                found.push(Problem {
+                found.push(Problem::new(
                     place,
-                    also: None,
-                    message: format!(
-                        "controller `{name}` may set the input `{input}` to what it must not be"
-                    ),
-                    label: words,
-                    help: "keep it where it makes sense: limits = [least, largest]".to_owned(),
-                });
+                    format!("controller `{name}` may set the input `{input}` to what it must not be"),
+                    words,
+                    "keep it where it makes sense: limits = [least, largest]",
+                ));
             }
         }
     }

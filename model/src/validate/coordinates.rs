@@ -73,13 +73,13 @@ fn shown(model: &Model, coordinate: JointCoordinate) -> String {
 fn with_itself(model: &Model, index: usize) -> Problem {
     let coupler = &model.couplers[index];
     let place = |side| Place { owner: Owner::CouplerEnd(index, side), key: "" };
-    Problem {
-        place: place(Side::Second),
-        also: Some((place(Side::First), "the first coordinate".to_owned())),
-        message: format!("coupler `{}` couples {} with itself", coupler.name, shown(model, coupler.first)),
-        label: "the same coordinate as the first".to_owned(),
-        help: "name two different coordinates in `first` and `second`".to_owned(),
-    }
+    Problem::new(
+        place(Side::Second),
+        format!("coupler `{}` couples {} with itself", coupler.name, shown(model, coupler.first)),
+        "the same coordinate as the first",
+        "name two different coordinates in `first` and `second`",
+    )
+    .also(place(Side::First), "the first coordinate")
 }
 
 fn cycle(model: &Model, groups: &Groups, index: usize) -> Problem {
@@ -118,18 +118,20 @@ fn contradicting_drivers(model: &Model, groups: &mut Groups) -> Vec<Problem> {
             Some(coupler) => format!(" through coupler `{}`", model.couplers[coupler].name),
             None => String::new(),
         };
-        found.push(Problem {
-            place: Place { owner: Owner::Driver(index), key: "joint" },
-            also: Some((Place { owner: Owner::Driver(other), key: "joint" }, "driven here".to_owned())),
-            message: format!(
-                "driver `{}` contradicts driver `{}`: {} is driven already{through}",
-                driver.name,
-                model.drivers[other].name,
-                shown(model, driver.coordinate)
-            ),
-            label: "driven twice".to_owned(),
-            help: "remove one of the two drivers, or add their motions: motion = { sum = [...] }".to_owned(),
-        });
+        found.push(
+            Problem::new(
+                Place { owner: Owner::Driver(index), key: "joint" },
+                format!(
+                    "driver `{}` contradicts driver `{}`: {} is driven already{through}",
+                    driver.name,
+                    model.drivers[other].name,
+                    shown(model, driver.coordinate)
+                ),
+                "driven twice",
+                "remove one of the two drivers, or add their motions: motion = { sum = [...] }",
+            )
+            .also(Place { owner: Owner::Driver(other), key: "joint" }, "driven here"),
+        );
     }
     found
 }
@@ -151,21 +153,22 @@ fn idle_force(model: &Model, index: usize) -> Option<Problem> {
             } else {
                 return None;
             };
-            Some(Problem {
-                place: place(Side::Second),
-                also: Some((place(Side::First), "the first body".to_owned())),
-                message,
-                label: label.to_owned(),
-                help: "name two different bodies, of which one moves".to_owned(),
-            })
+            Some(
+                Problem::new(
+                    place(Side::Second),
+                    message,
+                    label.to_owned(),
+                    "name two different bodies, of which one moves",
+                )
+                .also(place(Side::First), "the first body"),
+            )
         }
-        ForceKind::Load { body, .. } if !moves(body) => Some(Problem {
-            place: Place::force(index, "body"),
-            also: None,
-            message: format!("load `{}` acts on a body that it cannot move", force.name),
-            label: "fixed or driven".to_owned(),
-            help: "name a body that moves, or remove the load".to_owned(),
-        }),
+        ForceKind::Load { body, .. } if !moves(body) => Some(Problem::new(
+            Place::force(index, "body"),
+            format!("load `{}` acts on a body that it cannot move", force.name),
+            "fixed or driven",
+            "name a body that moves, or remove the load",
+        )),
         _ => None,
     }
 }
@@ -181,20 +184,20 @@ fn fixed_output(model: &Model, index: usize) -> Option<Problem> {
             _ => false,
         };
         let kind = if is_spring { "spring" } else { "link" };
-        return (!fits).then(|| Problem {
-            place: Place { owner: Owner::Output(index), key: "force" },
-            also: None,
-            message: format!("output `{}` is of a {kind}, and `{}` is none", output.name, force.name),
-            label: format!("not a {kind}"),
-            help: format!("name a [[force]] of kind \"{kind}\""),
+        return (!fits).then(|| {
+            Problem::new(
+                Place { owner: Owner::Output(index), key: "force" },
+                format!("output `{}` is of a {kind}, and `{}` is none", output.name, force.name),
+                format!("not a {kind}"),
+                format!("name a [[force]] of kind \"{kind}\""),
+            )
         });
     }
     let body = model.bodies.get(output.kind.frame()?.body).filter(|body| body.support == Support::Fixed)?;
-    Some(Problem {
-        place: Place { owner: Owner::Output(index), key: "body" },
-        also: None,
-        message: format!("output `{}` is of body `{}`, which is fixed", output.name, body.name),
-        label: "never changes".to_owned(),
-        help: "name a body that moves".to_owned(),
-    })
+    Some(Problem::new(
+        Place { owner: Owner::Output(index), key: "body" },
+        format!("output `{}` is of body `{}`, which is fixed", output.name, body.name),
+        "never changes",
+        "name a body that moves",
+    ))
 }

@@ -30,12 +30,13 @@ pub(super) fn of_output(model: &Model, index: usize, output: &Output) -> Option<
 }
 
 fn zero_parameters(model: &Model, parameters: &[Number; 4], place: Place, of: &str) -> Option<Problem> {
-    parameters.iter().all(|x| model.exact(x).is_zero()).then(|| Problem {
-        place,
-        also: None,
-        message: format!("the Euler parameters of {of} are all zero"),
-        label: "no direction to normalise".to_owned(),
-        help: "write [1, 0, 0, 0] for no rotation: (cos(angle/2), axis * sin(angle/2))".to_owned(),
+    parameters.iter().all(|x| model.exact(x).is_zero()).then(|| {
+        Problem::new(
+            place,
+            format!("the Euler parameters of {of} are all zero"),
+            "no direction to normalise",
+            "write [1, 0, 0, 0] for no rotation: (cos(angle/2), axis * sin(angle/2))",
+        )
     })
 }
 
@@ -65,12 +66,8 @@ fn directions(model: &Model, index: usize, side: Side, of: &str) -> Option<Probl
     };
     let [axis, zero] = exact_directions(model, end);
     let place = |key| Place::end(index, side, key);
-    let problem = |key, message: String, label: &str, help: String| Problem {
-        place: place(key),
-        also: None,
-        message,
-        label: label.to_owned(),
-        help,
+    let problem = |key, message: String, label: &str, help: String| {
+        Problem::new(place(key), message, label.to_owned(), help)
     };
     let vanishes = |v: &[Rational; 3]| v.iter().all(Zero::is_zero);
     let others = [&joint.first, &joint.second].map(|end| exact_directions(model, end));
@@ -97,12 +94,13 @@ fn directions(model: &Model, index: usize, side: Side, of: &str) -> Option<Probl
 pub(super) fn of_motion(model: &Model, index: usize, body: &Body) -> Vec<Problem> {
     let rotations = body.motion.iter().flat_map(|motion| &motion.rotations);
     let zero = rotations.filter(|(axis, _)| axis.iter().all(|x| model.exact(x).is_zero()));
-    let problem = |_| Problem {
-        place: Place { owner: Owner::Driven(index), key: "rotations" },
-        also: None,
-        message: format!("a rotation of body `{}` has no axis", body.name),
-        label: "an axis is zero".to_owned(),
-        help: "write a direction of any length but 0, such as axis = [0, 0, 1]".to_owned(),
+    let problem = |_| {
+        Problem::new(
+            Place { owner: Owner::Driven(index), key: "rotations" },
+            format!("a rotation of body `{}` has no axis", body.name),
+            "an axis is zero",
+            "write a direction of any length but 0, such as axis = [0, 0, 1]",
+        )
     };
     zero.map(problem).collect()
 }

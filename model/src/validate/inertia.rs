@@ -11,35 +11,18 @@ pub(super) fn is_left_out(body: &Body, numbers: &[Number]) -> bool {
     matches!(body.support, Support::Fixed | Support::Driven) && numbers.iter().all(Number::is_zero)
 }
 
-/// The mass of a body.
-pub(super) fn mass(model: &Model, index: usize, body: &Body) -> Option<Problem> {
-    let value = model.exact(&body.mass);
-    if value.is_positive() || is_left_out(body, std::slice::from_ref(&body.mass)) {
-        return None;
-    }
-    Some(Problem {
-        place: Place::body(index, "mass"),
-        also: None,
-        message: format!("the mass of body `{}` is not positive", body.name),
-        label: format!("{} kg", shown(&value)),
-        help: "write a mass greater than 0, in kg".to_owned(),
-    })
-}
-
 /// What point masses make of a body: what is written was checked as it was read.
 pub(super) fn size(model: &Model, index: usize, body: &Body) -> Option<Problem> {
     let numbers = std::iter::once(&body.mass).chain(&body.inertia);
     let mut numbers = numbers.chain(&body.frame).chain(&body.position).chain(&body.velocity);
     let is_wide = numbers.any(|number| !in_range(&model.exact(number)));
-    is_wide.then(|| Problem {
-        place: Place::body(index, "point_mass"),
-        also: None,
-        message: format!(
-            "body `{}` with its point masses is too large or too small to compute with",
-            body.name
-        ),
-        label: "make a moment of inertia or a place of such a size".to_owned(),
-        help: format!("a number is 0, or its size is between 1e-{SIZE_EXPONENT} and 1e{SIZE_EXPONENT}"),
+    is_wide.then(|| {
+        Problem::new(
+            Place::body(index, "point_mass"),
+            format!("body `{}` with its point masses is too large or too small to compute with", body.name),
+            "make a moment of inertia or a place of such a size",
+            format!("a number is 0, or its size is between 1e-{SIZE_EXPONENT} and 1e{SIZE_EXPONENT}"),
+        )
     })
 }
 
@@ -57,12 +40,8 @@ pub(super) fn inertia(model: &Model, index: usize, body: &Body) -> Option<Proble
         return None;
     }
     let tensor = Tensor(body.inertia.each_ref().map(|x| model.exact(x)));
-    let problem = |message: String, label: &str, help: &str| Problem {
-        place: Place::body(index, "inertia"),
-        also: None,
-        message,
-        label: label.to_owned(),
-        help: help.to_owned(),
+    let problem = |message: String, label: &str, help: &str| {
+        Problem::new(Place::body(index, "inertia"), message, label.to_owned(), help.to_owned())
     };
     if !tensor.is_positive() {
         let message = format!("the inertia of body `{}` is not positive definite", body.name);

@@ -5,9 +5,9 @@ mod contacts;
 mod controllers;
 mod coordinates;
 mod directions;
-mod forces;
 mod inertia;
 mod numbers;
+mod ranges;
 mod rules;
 mod topology;
 
@@ -15,6 +15,7 @@ pub(crate) use controllers::settings_problems;
 pub(crate) use coordinates::problems as coordinate_problems;
 pub use inertia::is_inertia;
 pub(crate) use numbers::problems as number_problems;
+pub(crate) use ranges::out_of_range;
 pub use rules::ParameterRule;
 pub(crate) use topology::problems as topology_problems;
 
@@ -81,6 +82,22 @@ pub(crate) struct Problem {
     pub(crate) message: String,
     pub(crate) label: String,
     pub(crate) help: String,
+}
+
+impl Problem {
+    pub(crate) fn new(
+        place: Place,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
+        Self { place, also: None, message: message.into(), label: label.into(), help: help.into() }
+    }
+
+    /// The same with another place, and a few words there.
+    pub(crate) fn also(self, place: Place, words: impl Into<String>) -> Self {
+        Self { also: Some((place, words.into())), ..self }
+    }
 }
 
 impl Place {

@@ -1,7 +1,7 @@
 //! What parameters must satisfy, for code that sets them without this crate.
 
-use super::forces::{Sign, conditions};
 use super::inertia::is_left_out;
+use super::ranges::Ranged;
 use crate::{JointKind, Model, Number};
 
 /// What must hold of numbers of which at least one is a parameter: what [`Model::with_parameters`] decides exactly.
@@ -46,12 +46,10 @@ impl ParameterRule<'_> {
 impl Model {
     /// The rules that the values of parameters can break, in the order of the model file.
     pub fn parameter_rules(&self) -> Vec<ParameterRule<'_>> {
-        use ParameterRule::{Inertia, NotNegative, NotParallel, NotZero, Positive};
+        use ParameterRule::{Inertia, NotParallel, NotZero};
         let mut rules = Vec::new();
         for body in &self.bodies {
-            if !is_left_out(body, std::slice::from_ref(&body.mass)) {
-                rules.push(Positive(&body.mass));
-            }
+            rules.extend(Ranged::of_body(0, body).rules());
             if !is_left_out(body, &body.inertia) {
                 rules.push(Inertia(&body.inertia));
             }
@@ -61,12 +59,7 @@ impl Model {
             );
         }
         for joint in &self.joints {
-            rules.extend([&joint.damping, &joint.armature].map(NotNegative));
-            match joint.kind {
-                JointKind::Screw => rules.push(NotZero(std::slice::from_ref(&joint.lead))),
-                JointKind::Rod => rules.push(Positive(&joint.length)),
-                _ => {}
-            }
+            rules.extend(Ranged::of_joint(0, joint).rules());
             rules.extend(joint.start.orientation.iter().map(|p| NotZero(p)));
             let ends = [&joint.first, &joint.second];
             if !matches!(joint.kind, JointKind::Rod | JointKind::Spherical) {
@@ -75,10 +68,8 @@ impl Model {
         }
         let frames = self.outputs.iter().filter_map(|output| output.kind.frame());
         rules.extend(frames.filter_map(|frame| frame.orientation.as_ref()).map(|p| NotZero(p)));
-        rules.extend(self.couplers.iter().map(|coupler| NotZero(std::slice::from_ref(&coupler.ratio))));
-        for (_, number, sign, _) in self.forces.iter().flat_map(|force| conditions(&force.kind)) {
-            rules.push(if sign == Sign::Positive { Positive(number) } else { NotNegative(number) });
-        }
+        rules.extend(self.couplers.iter().flat_map(|coupler| Ranged::of_coupler(0, coupler).rules()));
+        rules.extend(self.forces.iter().flat_map(|force| Ranged::of_force(0, force).rules()));
         for divisor in self.numbers().into_iter().flat_map(Number::divisors) {
             let rule = NotZero(std::slice::from_ref(divisor));
             if !rules.contains(&rule) {

@@ -37,27 +37,23 @@ fn is_reached(tree: &Tree, joint: &Joint) -> bool {
 }
 
 fn nothing_moves() -> Problem {
-    Problem {
-        place: Place { owner: super::Owner::Page, key: "body" },
-        also: None,
-        message: "nothing in this mechanism can move".to_owned(),
-        label: "every body is fixed".to_owned(),
-        help: "add a [[body]] without `fixed`, held by a [[joint]] or with `free = true`".to_owned(),
-    }
+    Problem::new(
+        Place { owner: super::Owner::Page, key: "body" },
+        "nothing in this mechanism can move",
+        "every body is fixed",
+        "add a [[body]] without `fixed`, held by a [[joint]] or with `free = true`",
+    )
 }
 
 fn to_itself(model: &Model, index: usize) -> Problem {
     let joint = &model.joints[index];
-    Problem {
-        place: Place::end(index, Side::Second, "body"),
-        also: Some((Place::end(index, Side::First, "body"), "the first body".to_owned())),
-        message: format!(
-            "joint `{}` joins body `{}` to itself",
-            joint.name, model.bodies[joint.first.body].name
-        ),
-        label: "the same body as the first".to_owned(),
-        help: "name two different bodies in `first` and `second`".to_owned(),
-    }
+    Problem::new(
+        Place::end(index, Side::Second, "body"),
+        format!("joint `{}` joins body `{}` to itself", joint.name, model.bodies[joint.first.body].name),
+        "the same body as the first",
+        "name two different bodies in `first` and `second`",
+    )
+    .also(Place::end(index, Side::First, "body"), "the first body")
 }
 
 fn between_held(model: &Model, index: usize) -> Problem {
@@ -74,13 +70,13 @@ fn between_held(model: &Model, index: usize) -> Problem {
         }
     };
     let alike = word(first) == word(second);
-    Problem {
-        place: Place::end(index, Side::Second, "body"),
-        also: Some((Place::end(index, Side::First, "body"), word(first).to_owned())),
-        message: format!("joint `{}` joins {are}, `{}` and `{}`", joint.name, first.name, second.name),
-        label: format!("{}{}", word(second), if alike { ", too" } else { "" }),
-        help: format!("remove the joint, or {help}"),
-    }
+    Problem::new(
+        Place::end(index, Side::Second, "body"),
+        format!("joint `{}` joins {are}, `{}` and `{}`", joint.name, first.name, second.name),
+        format!("{}{}", word(second), if alike { ", too" } else { "" }),
+        format!("remove the joint, or {help}"),
+    )
+    .also(Place::end(index, Side::First, "body"), word(first).to_owned())
 }
 
 /// A joint between the tree of a free body and another root. Bodies that only rods hold are not roots that could hold
@@ -93,16 +89,15 @@ fn ties_free_root(model: &Model, tree: &Tree, index: usize) -> Option<Problem> {
         return None;
     }
     let name = &model.bodies[free].name;
-    Some(Problem {
-        place: Place::joint(index, ""),
-        also: Some((Place::body(free, "free"), "the free body".to_owned())),
-        message: format!(
-            "joint `{}` connects the free body `{name}` to a body that is already held",
-            joint.name
-        ),
-        label: "leads to another fixed, driven or free body".to_owned(),
-        help: format!("remove `free` of body `{name}`: its joints place it"),
-    })
+    Some(
+        Problem::new(
+            Place::joint(index, ""),
+            format!("joint `{}` connects the free body `{name}` to a body that is already held", joint.name),
+            "leads to another fixed, driven or free body",
+            format!("remove `free` of body `{name}`: its joints place it"),
+        )
+        .also(Place::body(free, "free"), "the free body"),
+    )
 }
 
 /// The fixed or free body that a body hangs from.
@@ -119,15 +114,12 @@ fn unconnected(model: &Model, body: usize) -> Problem {
     let has_joint = model.joints.iter().any(|j| j.first.body == body || j.second.body == body);
     let label =
         if has_joint { "its joints lead to no fixed, driven or free body" } else { "no joint refers to it" };
-    Problem {
-        place: Place::body(body, ""),
-        also: None,
-        message: format!("body `{name}` is not connected"),
-        label: label.to_owned(),
-        help:
-            "add a [[joint]] that leads to it from a fixed body, or write free = true if it floats in space"
-                .to_owned(),
-    }
+    Problem::new(
+        Place::body(body, ""),
+        format!("body `{name}` is not connected"),
+        label.to_owned(),
+        "add a [[joint]] that leads to it from a fixed body, or write free = true if it floats in space",
+    )
 }
 
 /// A body whose angular velocity is given while its joint has a rate.
@@ -137,14 +129,16 @@ fn twice_started(model: &Model, link: &Link) -> Option<Problem> {
     if joint.kind == JointKind::Fixed || joint.start.rate.is_none() || body.angular_velocity.is_none() {
         return None;
     }
-    Some(Problem {
-        place: Place::joint(index, "rate"),
-        also: Some((Place::body(link.body, "angular_velocity"), "and its angular velocity".to_owned())),
-        message: format!("the start of body `{}` is given twice", body.name),
-        label: format!("the rate of the joint that holds `{}`", body.name),
-        help: format!(
-            "give either the `rate` of joint `{}` or the `angular_velocity` of body `{}`",
-            joint.name, body.name
-        ),
-    })
+    Some(
+        Problem::new(
+            Place::joint(index, "rate"),
+            format!("the start of body `{}` is given twice", body.name),
+            format!("the rate of the joint that holds `{}`", body.name),
+            format!(
+                "give either the `rate` of joint `{}` or the `angular_velocity` of body `{}`",
+                joint.name, body.name
+            ),
+        )
+        .also(Place::body(link.body, "angular_velocity"), "and its angular velocity"),
+    )
 }

@@ -246,11 +246,8 @@ fn check_references(model: &Model) {
         match &force.kind {
             ForceKind::Link { first, second, .. } => assert!(first.0.max(second.0) < model.bodies.len()),
             ForceKind::Load { body, .. } => assert!(*body < model.bodies.len()),
-            ForceKind::Spring { on, .. }
-            | ForceKind::Damper { on, .. }
-            | ForceKind::Coulomb { on, .. }
-            | ForceKind::Stop { on, .. }
-            | ForceKind::Motor { on, .. } => {
+            kind => {
+                let (on, _) = kind.parts().on.expect("it acts along a coordinate");
                 assert!(on.coordinate < model.joints[on.joint].kind.coordinates().len());
             }
         }

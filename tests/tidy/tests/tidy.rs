@@ -36,7 +36,7 @@ const LINES: usize = 500;
 const STAGES: [(&str, &str); 5] = [
     (
         "model",
-        "scalar number spatial lines spline motion directions elements shape kinematics tree controller formula event \
+        "scalar number spatial lines spline motion directions elements joint_kind shape keys kinematics tree controller formula event \
          contact validate assemble diagnostics numbers redundancy parse queries",
     ),
     (

@@ -1,6 +1,6 @@
 //! Parameters that are computed from others, in whatever order the model file has them.
 
-use super::{Entry, name};
+use super::{Entry, VALUE, name};
 use crate::parse::expression::{self, Term};
 use crate::parse::names;
 use crate::parse::numbers::{computed, named};
@@ -31,7 +31,7 @@ pub(super) fn read(reader: &mut Reader<'_>, entries: &[Entry<'_>]) -> Vec<Derive
         let name = name(reader, place, entry);
         let text = entry.1.get_ref().as_str().unwrap_or_default();
         if let Ok(term) = expression::parse(text) {
-            pending.push(Pending { name, text, term, item: Item { place, value: entry.1 } });
+            pending.push(Pending { name, text, term, item: Item { place, key: VALUE, value: entry.1 } });
         }
     }
     let order: Vec<String> = pending.iter().map(|entry| entry.name.clone()).collect();

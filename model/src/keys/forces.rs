@@ -1,0 +1,99 @@
+//! Forces. A kind is its law and its keys: what acts along a joint coordinate x, on its second body and in the opposite
+//! sense on its first, and what acts on points of bodies.
+
+use super::{
+    KIND, Key, ON_COORDINATE, ON_JOINT, POINT, Table, Value, kind, name, number, reference, strength, table,
+    word,
+};
+
+const STIFFNESS: Key = number("stiffness", "N.m/rad or N/m", "").required();
+const DAMPING: Key = strength("damping", "N.m.s/rad or N.s/m", "").not_negative(DRIVES);
+const DRIVES: &str = "it would drive the motion";
+const SIDES: &[(&str, &str)] = &[("lower", ""), ("upper", "")];
+
+/// `[[force]]`.
+pub static FORCE: Table = Table::new(
+    "force",
+    "A force besides gravity and the joints' own damping.",
+    &[name("name"), KIND],
+)
+.of_kinds(&[
+    kind(
+        "spring",
+        "−`stiffness` · (x − `free`)",
+        &[ON_JOINT, ON_COORDINATE, STIFFNESS, number("free", "rad or m", "where it is relaxed").or("0")],
+    ),
+    kind("damper", "−`damping` · ẋ", &[ON_JOINT, ON_COORDINATE, DAMPING.required()]),
+    kind(
+        "coulomb",
+        "−`level` · tanh(ẋ / `rate`): dry friction, made smooth",
+        &[
+            ON_JOINT,
+            ON_COORDINATE,
+            strength("level", "N.m or N", "").not_negative(DRIVES).required(),
+            number("rate", "rad/s or m/s", "at which friction reaches 76 % of its level")
+                .positive("friction would jump where the velocity changes sign")
+                .required()
+                .eg("rate = ..., in rad/s or m/s, where friction reaches 76 % of its level"),
+        ],
+    ),
+    kind(
+        "stop",
+        "−`stiffness` · ρ(z) − `damping` · σ(z) · ẋ with z = x − `limit`, see below",
+        &[
+            ON_JOINT,
+            ON_COORDINATE,
+            number("limit", "rad or m", "").required(),
+            word("side", SIDES, "which way is blocked").required(),
+            STIFFNESS.positive("the stop would exert no force"),
+            DAMPING.or("0"),
+            number("softness", "rad or m", "the width over which it sets in")
+                .positive("the force of the stop would jump")
+                .required()
+                .eg("softness = ..., in rad or m: the distance over which the force of the stop builds up"),
+        ],
+    ),
+    kind(
+        "motor",
+        "`value`",
+        &[
+            ON_JOINT,
+            ON_COORDINATE,
+            strength("value", "N.m or N", "usually an input")
+                .required()
+                .eg("value = ..., in N.m or N, or an input"),
+        ],
+    ),
+    kind(
+        "link",
+        "−`stiffness` · (l − `free_length`) − `damping` · l̇ between two points at the distance l",
+        &[
+            table("first", &FORCE_END, "a table of `body` and `point`").required(),
+            table("second", &FORCE_END, "likewise").required(),
+            number("stiffness", "N/m", "it or `damping` must be there")
+                .eg("stiffness = ..., in N/m, or damping = ..., in N.s/m")
+                .or("0"),
+            strength("damping", "N.s/m", "").not_negative(DRIVES).or("0"),
+            number("free_length", "m", "")
+                .not_negative("lengths cannot be negative")
+                .or("required with `stiffness`"),
+        ],
+    ),
+    kind(
+        "load",
+        "a force at a point of a body and a torque on it, constant in a frame",
+        &[
+            reference("body", ""),
+            POINT,
+            Key::new("force", Value::Strengths("N"), "it or `torque` must be there")
+                .eg("force = [0, 0, 0], in N, or torque = [0, 0, 0], in N.m")
+                .or("[0, 0, 0]"),
+            Key::new("torque", Value::Strengths("N.m"), "").or("[0, 0, 0]"),
+            word("frame", &[("global", ""), ("body", "")], "").or("\"global\""),
+        ],
+    ),
+]);
+
+/// `first` and `second` of a link.
+pub static FORCE_END: Table =
+    Table::new("end of a link", "A point of a body.", &[reference("body", "name of the body"), POINT]);

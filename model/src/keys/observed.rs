@@ -1,0 +1,160 @@
+//! What is computed besides the motion, and what acts on it from instant to instant.
+
+use super::{
+    KIND, Key, ON_COORDINATE, ON_JOINT, POINT, Table, Value, flag, kind, name, number, orientation, plain,
+    reference, text, word,
+};
+
+/// Of a frame in a body.
+const FRAME: &[Key] = &[
+    reference("body", ""),
+    POINT,
+    orientation("Euler parameters of the output's axes").or("the body's axes"),
+];
+const FORCE: &[Key] = &[reference("force", "")];
+
+/// `[[output]]`.
+pub static OUTPUT: Table = Table::new(
+    "output",
+    "What a generated mechanism computes only if it is asked for.",
+    &[name("name; it heads the columns of results"), KIND],
+)
+.of_kinds(&[
+    kind("pose", "position of the point (m, global) and Euler parameters of the axes", FRAME),
+    kind(
+        "velocity",
+        "velocity of the point (m/s, global) and angular velocity (rad/s, by these axes)",
+        FRAME,
+    ),
+    kind("acceleration", "their derivatives (m/s², global, and rad/s², by these axes)", FRAME),
+    kind(
+        "inertial",
+        "what an inertial sensor reads: specific force Aᵀ(r̈ − g) (m/s²) and angular rate (rad/s)",
+        FRAME,
+    ),
+    kind(
+        "reaction",
+        "force (N) and torque (N·m) of the joint on its second body, see below",
+        &[reference("joint", "")],
+    ),
+    kind(
+        "driver",
+        "torque or force of the driver along its coordinate (N·m or N)",
+        &[reference("driver", "")],
+    ),
+    kind(
+        "coupler",
+        "torque or force of the coupler along its second coordinate (N·m or N), see below",
+        &[reference("coupler", "")],
+    ),
+    kind("spring", "torque or force of the spring (N·m or N), and its deflection (rad or m)", FORCE),
+    kind("link", "force with which the link pushes its ends apart (N), and its length (m)", FORCE),
+    kind("energy", "kinetic and potential energy (J)", &[]),
+    kind("power", "power of all non-conservative forces, and of drivers and driven bodies (W)", &[]),
+]);
+
+const EACH: Value = Value::Either(&[Value::Number(""), Value::List(16, "")]);
+const STEP: &str = "the size of a step of the converter, or 0 for none";
+
+/// `[[controller]]`.
+pub static CONTROLLER: Table = Table::new(
+    "controller",
+    "A law from outputs to inputs, at its own period.",
+    &[
+        name("name, for messages"),
+        KIND,
+        Key::new(
+            "outputs",
+            Value::Texts(1, 16),
+            "what it sees: columns of a run's table, at most 16, see below",
+        )
+        .required()
+        .eg("outputs = [\"...\"]: joint coordinates, their rates, numbers of outputs"),
+        Key::new("inputs", Value::Texts(1, 16), "names of the inputs that it sets, at most 16")
+            .required()
+            .eg("inputs = [\"...\"], names of [inputs]"),
+        plain("frequency_hz", "Hz", "how often it samples, a fraction of whole numbers")
+            .positive("")
+            .eg("frequency_hz = 1000, or period = 0.001")
+            .or("required"),
+        plain("period", "s", "the same, in place of `frequency_hz`").positive(""),
+        plain("delay", "s", "from a sample to its effect; not more than a period").or("0"),
+        Key::new("setpoint", EACH, "what the outputs are to be: a number for all or an array").or("0"),
+        Key::new("limits", Value::Numbers(2, ""), "`[least, largest]` of each input").or("none"),
+        Key::new("output_step", EACH, "the step to which outputs are rounded: a number for all or an array")
+            .not_negative(STEP)
+            .or("0"),
+        number("input_step", "", "the same of inputs, after the limits").not_negative(STEP).or("0"),
+    ],
+)
+.of_kinds(&[
+    kind(
+        "pid",
+        "u = kp e + ki ∫e + kd ė of one output to one input, see below",
+        &[
+            number("kp", "", "").eg("kp = ..., and ki and kd as far as they are not 0").or("0"),
+            number("ki", "1/s", "").or("0"),
+            number("kd", "s", "at least one of the three").or("0"),
+        ],
+    ),
+    kind(
+        "state_feedback",
+        "u = K e",
+        &[Key::new("gains", Value::Rows, "a row for each input, in it a number for each output")
+            .required()
+            .eg("gains = [[...]]: a row for each input, in it a number for each output")],
+    ),
+    kind(
+        "transfer_function",
+        "(b0 + b1/z + …) / (a0 + a1/z + …) of one output to one input",
+        &[
+            Key::new("numerator", Value::List(17, ""), "`[b0, b1, …]`")
+                .required()
+                .eg("numerator = [...], powers of 1/z"),
+            Key::new("denominator", Value::List(17, ""), "`[a0, a1, …]` with a0 ≠ 0")
+                .required()
+                .eg("denominator = [...], powers of 1/z"),
+        ],
+    ),
+]);
+
+const DIRECTIONS: &[(&str, &str)] = &[("rising", ""), ("falling", ""), ("both", "")];
+
+/// `[[event]]`.
+pub static EVENT: Table = Table::new(
+    "event",
+    "A crossing of a level, which runs list.",
+    &[
+        name("name, in the list"),
+        text("of", "what crosses: a column of a run's table, or a formula, see below")
+            .required()
+            .eg("of = \"...\": a joint coordinate, a rate (\"joint rate\"), or a number of an output"),
+        text("minus", "what is subtracted from it, likewise")
+            .eg("minus = \"...\", the name of a column of a run's table")
+            .or("none"),
+        number("level", "", "the level").or("0"),
+        word("direction", DIRECTIONS, "which crossings count").or("\"both\""),
+        flag("stop", "whether the run ends at the first one"),
+    ],
+);
+
+/// `[[contact]]`.
+pub static CONTACT: Table = Table::new("contact", "Rigid stops and dry friction that sticks, on a joint coordinate.", &[
+    name("name, unlike those of parameters and inputs"),
+    ON_JOINT,
+    ON_COORDINATE,
+    number("lower", "rad or m", "the lower stop").or("none"),
+    number("upper", "rad or m", "the upper stop")
+        .eg("upper = ..., in rad or m, lower = ..., friction = ..., in N.m or N, or friction_coefficient = ...")
+        .or("none"),
+    number("restitution", "", "the part of its rate with which the coordinate rebounds from a stop, 0 to 1")
+        .eg("restitution = ..., from 0 to 1: the part of its rate with which the joint rebounds")
+        .or("required with stops"),
+    number("friction", "N.m or N", "the kinetic level of dry friction").not_negative("").or("0"),
+    number("static_friction", "N.m or N", "the static level, not below the kinetic one").or("that of `friction`"),
+    number("friction_coefficient", "", "times the reaction of the joint: added to the kinetic level, see below")
+        .not_negative("")
+        .or("0"),
+    number("static_friction_coefficient", "", "the same of the static level").or("that of `friction_coefficient`"),
+    number("radius", "m", "of the bearing").positive("").or("required with a coefficient about an axis"),
+]);
