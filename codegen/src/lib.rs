@@ -62,7 +62,9 @@ pub use expr::schedule::{Operations, Passes};
 pub use groups::Functions;
 pub use gyro_program::{Group, Kernel};
 pub use repeat::Repetition;
-pub use scheduled::{JointForm, JointPlace, Scheduled, ScheduledKernel, Variable};
+pub use scheduled::{
+    Index, JointForm, JointPlace, Origin, Scheduled, ScheduledKernel, Store, Stored, Variable,
+};
 pub use selection::UnknownFunction;
 pub use simplify::cheapest::Form;
 pub use simplify::normal_form::Reduction;
@@ -74,16 +76,18 @@ use equations::{Equations, Parts, Rotations};
 use groups::Facts;
 use joint_space::{Candidates, Coordinates, JointSpace, obstacle};
 use kernels::Kernels;
+use scheduled::ExactKernel;
 use solve::Solution;
 use solve::dependence::Yielding;
 use solve::forward_dynamics::ForwardDynamics;
 use solve::partition::Partition;
 
 use gyro_model::{AssemblyError, Diagnostics, Model, Output, OutputKind, Start};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// A generated module.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Module {
     /// Name of the module: the model's, in `snake_case`.
     pub name: String,
@@ -97,6 +101,8 @@ pub struct Module {
     pub constants: String,
     /// What was generated, as data: the head of the file shows it.
     pub data_sheet: DataSheet,
+    /// The same mechanism as data, operation for operation: what is written in other languages is written from this.
+    pub scheduled: Scheduled,
 }
 
 impl Module {
@@ -228,26 +234,36 @@ pub fn generate_by_effort(
 
 fn write(file_name: &str, model: &Model, asked: (Elimination, &Functions, Effort)) -> Result<Module, Error> {
     let start = model.assemble().map_err(Error::Start)?;
-    let mut equations = equations(model, asked, &start);
-    let mut kernels = Kernels::of(&equations);
-    kernels.finish(&mut equations.graph, equations.passes);
+    let (equations, kernels, exact) = computed(model, asked, &start);
+    let scheduled = Scheduled::of(&equations, &kernels, &exact, &start);
     let type_name = module::type_name(&model.name);
     let module::Text { code, constants, data_sheet } =
-        module::write(file_name, &type_name, (&equations, kernels), &start);
-    Ok(Module { name: model.name.clone(), type_name, code, constants, data_sheet })
+        module::write(file_name, &type_name, (equations, kernels, exact), &start);
+    Ok(Module { name: model.name.clone(), type_name, code, constants, data_sheet, scheduled })
 }
 
-/// The kernels of a model as data, with given functions and effort: what [`generate_by_effort`] writes as text,
-/// operation for operation.
+/// The kernels of a model as data, with given functions and effort: what [`generate_by_effort`] gives beside the text,
+/// without that.
 ///
 /// # Errors
 /// Why no consistent start exists.
 pub fn schedule(model: &Model, functions: &Functions, effort: Effort) -> Result<Scheduled, Error> {
     let start = model.assemble().map_err(Error::Start)?;
-    let mut equations = equations(model, (Elimination::NullSpace, functions, effort), &start);
+    let (equations, kernels, exact) = computed(model, (Elimination::NullSpace, functions, effort), &start);
+    Ok(Scheduled::of(&equations, &kernels, &exact, &start))
+}
+
+/// What a module computes: as expressions, in final form, and as tapes.
+fn computed<'m>(
+    model: &'m Model,
+    asked: (Elimination, &Functions, Effort),
+    start: &Start,
+) -> (Equations<'m>, Kernels, BTreeMap<Kernel, ExactKernel>) {
+    let mut equations = equations(model, asked, start);
     let mut kernels = Kernels::of(&equations);
     kernels.finish(&mut equations.graph, equations.passes);
-    Ok(Scheduled::of(&equations, &kernels, &start))
+    let exact = ExactKernel::all(&equations, &kernels);
+    (equations, kernels, exact)
 }
 
 /// From the model to what its module computes: derives, solves and chooses.

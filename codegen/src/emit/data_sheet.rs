@@ -2,19 +2,19 @@
 //! of the file, which shows of it what the verifier can see for itself.
 
 use crate::equations::{Equations, PartitionForm};
-use crate::expr::graph::{ExprId, Graph};
+use crate::expr::graph::Graph;
 use crate::expr::rounding::LIKE as ROUNDING;
 use crate::expr::schedule::{Operations, Passes};
 use crate::joint_space::obstacle;
 use crate::kernels::Kernels;
 use crate::repeat::Repetition;
-use crate::scheduled;
+use crate::scheduled::ExactKernel;
 use crate::simplify::cheapest::{Chosen, Form};
 use crate::simplify::normal_form::Reduction;
 use gyro_model::{Model, RowOwner, Support};
 use gyro_program::Group;
 use gyro_program::Kernel;
-use rustc_hash::FxHashMap as HashMap;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// What was generated and what was left out.
@@ -68,7 +68,7 @@ impl DataSheet {
     pub(crate) fn of(
         equations: &Equations,
         kernels: &Kernels,
-        repetitions: &HashMap<Vec<ExprId>, Repetition>,
+        exact: &BTreeMap<Kernel, ExactKernel>,
     ) -> Self {
         let model = equations.model;
         let bodies = model.coordinate_bodies().into_iter().map(|body| model.bodies[body].name.clone());
@@ -83,8 +83,7 @@ impl DataSheet {
             spared: spared(equations),
             functions: (kernels.iter())
                 .map(|kernel| {
-                    let written = || repetitions.get(&scheduled::written(equations, kernels, kernel.0).1);
-                    let repetition = repetitions.get(&kernel.1.roots).or_else(written).copied();
+                    let repetition = exact[&kernel.0].repetition;
                     let function = Function::of(&equations.graph, kernel);
                     let operations = repetition.map_or(function.operations, |written| written.operations);
                     Function { repetition, operations, ..function }

@@ -3,6 +3,7 @@
 
 use super::writer::ModuleWriter;
 use crate::emit::names::{ident, index};
+use crate::scheduled::{Origin, groups, origin};
 use gyro_model::Start;
 use gyro_program::{Buffer, Group, Kernel, Space};
 use proc_macro2::TokenStream;
@@ -11,33 +12,8 @@ use quote::quote;
 impl ModuleWriter<'_> {
     /// All traits that the module has.
     pub fn contract(&self, start: &Start) -> TokenStream {
-        Group::in_text()
-            .filter(|&group| self.has(group))
-            .map(|group| self.implementation(group, start))
-            .collect()
-    }
-
-    /// Whether a trait is implemented: it is asked for, and the mechanism has it.
-    fn has(&self, group: Group) -> bool {
-        let e = self.equations;
-        let Some(space) = &e.joint_space else {
-            // Accelerations at corrected states are then those at any state.
-            let needs_joints = group.with_needs().contains(&Group::Joint) && group != Group::Corrected;
-            return e.functions.has(group) && !needs_joints;
-        };
-        let has_outputs = !self.kernels.roots(Kernel::JointOutputs).is_empty();
-        match group {
-            Group::Joint => true,
-            Group::Jacobian => space.jacobian.is_some(),
-            Group::ParameterJacobian => space.parameter_jacobian.is_some(),
-            Group::JointOutputs => has_outputs,
-            Group::OutputDerivatives => has_outputs && space.output_derivatives.is_some(),
-            Group::Frames => space.frames.is_some(),
-            group if Group::on_request().any(|other| other == group) => {
-                space.on_request.forms.keys().any(|kernel| kernel.group() == group)
-            }
-            group => e.functions.has(group),
-        }
+        let groups = groups(self.equations, &self.kernels);
+        groups.into_iter().map(|group| self.implementation(group, start)).collect()
     }
 
     fn implementation(&self, group: Group, start: &Start) -> TokenStream {
@@ -125,48 +101,32 @@ impl ModuleWriter<'_> {
 
     /// A function of a trait; nothing where the trait's own does.
     fn function_of(&self, kernel: Kernel) -> Option<TokenStream> {
-        let e = self.equations;
-        let is_empty = self.kernels.roots(kernel).is_empty();
-        match kernel {
-            Kernel::ParameterSetup => None,
-            Kernel::LoopClosure
-            | Kernel::ClosureDistances
-            | Kernel::ClosePositions
-            | Kernel::CloseVelocities
-                if self.counts.closure == 0 =>
-            {
-                None
-            }
-            Kernel::CorrectedAccelerations if e.joint_space.is_none() => Some(self.cut_accelerations()),
-            Kernel::CorrectedDerivative if is_empty => Some(quote! {
-                fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-                    gyro_sim::Dynamics::derivative(self, t, y, dy);
-                }
-            }),
-            Kernel::Outputs | Kernel::JointInputJacobian | Kernel::JointParameterJacobian if is_empty => {
-                Some(self.idle(kernel))
-            }
-            _ => Some(self.written(kernel)),
-        }
+        // The constructor calls it, and it is no function of a trait.
+        let kernel = (kernel != Kernel::ParameterSetup).then_some(kernel)?;
+        Some(match origin(self.equations, &self.kernels, kernel)? {
+            Origin::Kernel => self.written(kernel),
+            Origin::Idle => self.idle(kernel),
+            Origin::Other(other) => self.of_other(kernel, other),
+        })
     }
 
-    /// The accelerations at any state without the multipliers that come with them.
-    fn cut_accelerations(&self) -> TokenStream {
-        let e = self.equations;
-        let [n_solved, n_velocities] = [e.solved.roots.len(), e.n_velocities()].map(index);
-        let solved = if e.n_loop_multipliers() == 0 {
-            quote! { gyro_sim::Dynamics::accelerations(self, t, y, out); }
+    /// The first results of another function: all, or without the multipliers that come with accelerations.
+    fn of_other(&self, kernel: Kernel, other: Kernel) -> TokenStream {
+        let [(out, space), ..] = kernel.signature().written()[..] else { return quote! {} };
+        let n = space.len(&self.counts);
+        let n_solved = other.signature().n_results(&self.counts).unwrap_or(n);
+        let (name, out, space) = (ident(kernel.name()), ident(out), ident(space.name()));
+        let (of, other) = (ident(other.group().trait_name()), ident(other.name()));
+        let statements = if n == n_solved {
+            quote! { gyro_sim::#of::#other(self, t, y, #out); }
         } else {
+            let [n, n_solved] = [n, n_solved].map(index);
             quote! {
                 let mut solved = [T::constant(0.0); #n_solved];
-                gyro_sim::Dynamics::accelerations(self, t, y, &mut solved);
-                out.copy_from_slice(&solved[..#n_velocities]);
+                gyro_sim::#of::#other(self, t, y, &mut solved);
+                #out.copy_from_slice(&solved[..#n]);
             }
         };
-        quote! {
-            fn corrected_accelerations(&self, t: T, y: &Self::State, out: &mut Self::Velocities) {
-                #solved
-            }
-        }
+        quote! { fn #name(&self, t: T, y: &Self::State, #out: &mut Self::#space) { #statements } }
     }
 }

@@ -174,13 +174,13 @@ impl ModuleWriter<'_> {
 
     /// Nothing if nothing depends on parameters alone.
     fn parameter_setup(&self) -> Option<TokenStream> {
-        let roots = self.kernels.roots(Kernel::ParameterSetup);
-        let n = index(roots.len());
-        (!roots.is_empty()).then(|| {
-            self.function(Kernel::ParameterSetup.signature().does, roots, |body, _, _| {
+        let n = self.kernels.roots(Kernel::ParameterSetup).len();
+        let places = index(n);
+        (n > 0).then(|| {
+            self.function(Kernel::ParameterSetup, |body, _, _| {
                 let (statements, filled) = (&body.statements, filled("out", &body.values));
                 quote! {
-                    fn parameter_setup(&self, out: &mut [T; #n]) {
+                    fn parameter_setup(&self, out: &mut [T; #places]) {
                         #statements
                         #filled
                     }

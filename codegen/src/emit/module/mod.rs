@@ -16,10 +16,12 @@ use crate::emit::data_sheet::DataSheet;
 use crate::emit::literals::Literals;
 use crate::equations::Equations;
 use crate::kernels::Kernels;
+use crate::scheduled::ExactKernel;
 use gyro_model::Start;
+use gyro_program::Kernel;
 use proc_macro2::TokenStream;
 use quote::quote;
-use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 /// `gyroscope_maximal` to `GyroscopeMaximal`; what Rust or the generic parameter already means gets an underscore.
 pub fn type_name(module_name: &str) -> String {
@@ -45,15 +47,14 @@ pub struct Text {
 pub fn write(
     file_name: &str,
     type_name: &str,
-    (equations, kernels): (&Equations, Kernels),
+    (equations, kernels, exact): (Equations<'_>, Kernels, BTreeMap<Kernel, ExactKernel>),
     start: &Start,
 ) -> Text {
     let literals = Literals::default();
     let counts = equations.counts();
-    let repetitions = RefCell::default();
-    let module = ModuleWriter { equations, counts, type_name, kernels, literals, repetitions };
+    let module = ModuleWriter { equations: &equations, counts, type_name, kernels, literals, exact };
     let tokens = module.tokens(start);
-    let data_sheet = DataSheet::of(equations, &module.kernels, &module.repetitions.borrow());
+    let data_sheet = DataSheet::of(&equations, &module.kernels, &module.exact);
     let (tokens, constants) = module.literals.write(tokens);
     let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
     let text = tables::with_numbers(prettyplease::unparse(&file), &equations.tables);

@@ -5,7 +5,6 @@ use crate::emit::names::{ident, index};
 use crate::emit::results::stored;
 use crate::equations::PartitionForm;
 use crate::expr::symbol::Symbol;
-use crate::scheduled;
 use gyro_program::Kernel;
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -107,20 +106,16 @@ impl ModuleWriter<'_> {
         let name = ident(self.type_name);
         let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
         let n_state = index(self.equations.n_state());
-        let vectors = self.function(
-            Kernel::ChartVectors.signature().does,
-            self.kernels.roots(Kernel::ChartVectors),
-            |body, _, y| {
-                let statements = &body.statements;
-                let vectors = body.values.chunks(4).map(|vector| quote! { [#(#vector),*] });
-                quote! {
-                    fn chart_vectors(&self, #y: &[T; #n_state]) -> [[T; 4]; #n_charts] {
-                        #statements
-                        [#(#vectors),*]
-                    }
+        let vectors = self.function(Kernel::ChartVectors, |body, _, y| {
+            let statements = &body.statements;
+            let vectors = body.values.chunks(4).map(|vector| quote! { [#(#vector),*] });
+            quote! {
+                fn chart_vectors(&self, #y: &[T; #n_state]) -> [[T; 4]; #n_charts] {
+                    #statements
+                    [#(#vectors),*]
                 }
-            },
-        );
+            }
+        });
         let newton = self.solve("newton_step_on", Kernel::NewtonStep);
         let velocities = self.solve("solve_velocities_on", Kernel::SolveVelocities);
         quote! {
@@ -159,12 +154,12 @@ impl ModuleWriter<'_> {
     /// A solve of the partition, which overwrites part of the state; what keeps its value is not stored again.
     fn solve(&self, name: &str, kernel: Kernel) -> TokenStream {
         let name = ident(name);
-        let (places, roots) = scheduled::stores(self.equations, kernel, self.kernels.roots(kernel));
+        let places = self.exact.get(&kernel).map_or(&[][..], |exact| &exact.places);
         let y = ident(if places.is_empty() { "_y" } else { "y" });
         let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
         let n_state = index(self.equations.n_state());
-        self.function(kernel.signature().does, &roots, |body, t, _| {
-            let (statements, stored) = (&body.statements, stored("y", &places, &body.values));
+        self.function(kernel, |body, t, _| {
+            let (statements, stored) = (&body.statements, stored("y", places, &body.values));
             let charted = body.symbols.iter().any(|s| matches!(s, Symbol::Chart { .. }));
             let charts = ident(if charted { "charts" } else { "_charts" });
             quote! {

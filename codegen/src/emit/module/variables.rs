@@ -2,6 +2,7 @@
 
 use super::writer::ModuleWriter;
 use crate::emit::names::{ident, index};
+use crate::emit::results::kept_name;
 use crate::emit::tokens::Variables;
 use crate::equations::Argument;
 use crate::expr::symbol::Symbol;
@@ -54,7 +55,11 @@ impl Variables for ModuleWriter<'_> {
             Symbol::Change(row) => bound(format!("row{row}")),
             Symbol::Coordinate(place) => bound(format!("x{place}")),
             Symbol::Rate(place) => bound(format!("u{place}")),
-            Symbol::Entry { .. } | Symbol::Local(_) => unreachable!("loops know what these are"),
+            Symbol::Entry { array, row, column } => {
+                let (array, row, column) = (kept_name(array), index(row), index(column));
+                (quote! { #array[#row][#column] }, None)
+            }
+            Symbol::Local(_) => unreachable!("loops know what these are"),
             Symbol::Sine(_)
             | Symbol::Cosine(_)
             | Symbol::Unit(_)

@@ -7,18 +7,15 @@ use crate::emit::loops;
 use crate::emit::names::{ident, index};
 use crate::emit::tokens::{self, Body};
 use crate::equations::Equations;
-use crate::expr::graph::ExprId;
-use crate::expr::schedule::Operations;
+use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
 use crate::kernels::Kernels;
-use crate::repeat::Repetition;
-use crate::scheduled;
-use gyro_program::Counts;
+use crate::scheduled::ExactKernel;
+use crate::tape;
+use gyro_program::{Counts, Kernel};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
-use rustc_hash::FxHashMap as HashMap;
-use std::cell::RefCell;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 fn table_of(symbol: &Symbol) -> Option<usize> {
     if let Symbol::Table { table, .. } = symbol { Some(*table) } else { None }
@@ -42,8 +39,8 @@ pub struct ModuleWriter<'a> {
     pub kernels: Kernels,
     /// Exact constants of all functions.
     pub literals: Literals,
-    /// How kernels with loops are written, by what they compute.
-    pub repetitions: RefCell<HashMap<Vec<ExprId>, Repetition>>,
+    /// What is written of each kernel.
+    pub exact: BTreeMap<Kernel, ExactKernel>,
 }
 
 impl ModuleWriter<'_> {
@@ -51,24 +48,16 @@ impl ModuleWriter<'_> {
         self.equations.model.coordinate_bodies()
     }
 
-    pub fn body(&self, roots: &[ExprId]) -> Body {
-        let (kernel, repetition) = scheduled::tape(self.equations, roots);
+    fn body(&self, kernel: &tape::Kernel<Symbol, Constant>) -> Body {
         let mut body = if kernel.loops.is_empty() {
-            tokens::body(self, &self.literals, &kernel)
+            tokens::body(self, &self.literals, kernel)
         } else {
-            loops::body(self, &self.literals, &kernel)
+            loops::body(self, &self.literals, kernel)
         };
-        if let Some(repetition) = repetition {
-            self.repetitions.borrow_mut().insert(roots.to_vec(), repetition);
-        }
         let tables: BTreeSet<_> = body.symbols.iter().filter_map(table_of).collect();
         let (statements, tables) = (&body.statements, tables.into_iter().map(evaluated_table));
         body.statements = quote! { #(#tables)* #statements };
         body
-    }
-
-    pub fn operations(&self, roots: &[ExprId]) -> Operations {
-        Operations::count(&self.equations.graph, roots)
     }
 
     /// Knots and pieces of each table, without their numbers.
@@ -90,11 +79,12 @@ impl ModuleWriter<'_> {
     /// A function with its operation counts; arguments that it does not read get a leading underscore.
     pub fn function(
         &self,
-        what: &str,
-        roots: &[ExprId],
+        kernel: Kernel,
         write: impl Fn(&Body, &TokenStream, &Ident) -> TokenStream,
     ) -> TokenStream {
-        let body = self.body(roots);
+        let nothing = ExactKernel::default();
+        let exact = self.exact.get(&kernel).unwrap_or(&nothing);
+        let body = self.body(&exact.tape);
         let reads_state = body.symbols.iter().any(|symbol| {
             matches!(
                 symbol,
@@ -117,9 +107,7 @@ impl ModuleWriter<'_> {
             (false, true) => "x",
             (false, false) => "_y",
         });
-        let repetition = self.repetitions.borrow().get(roots).copied();
-        let operations = repetition.map_or_else(|| self.operations(roots), |written| written.operations);
-        let doc = format!(" {what}: {operations}.");
+        let doc = format!(" {}: {}.", kernel.signature().does_in_rust(), exact.operations);
         let function = write(&body, &t, &y);
         quote! { #[doc = #doc] #function }
     }
