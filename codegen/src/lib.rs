@@ -54,7 +54,7 @@ mod solve;
 pub mod tape;
 
 pub use effort::Effort;
-pub use emit::data_sheet::{DataSheet, Function, large};
+pub use emit::data_sheet::{DataSheet, Function, large, shown_name};
 pub use equations::Argument;
 pub use equations::PartitionForm;
 pub use expr::rounding::LIKE as ROUNDING;

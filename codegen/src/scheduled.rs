@@ -77,7 +77,7 @@ pub enum Variable {
 }
 
 /// A kernel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScheduledKernel {
     /// What it computes. Constants are rounded.
     pub tape: tape::Kernel<Variable, f64>,

@@ -363,6 +363,16 @@ impl Kernel {
     }
 }
 
+impl Given {
+    /// The name of the array that it stands in, if it is one of numbers.
+    pub fn array(self) -> Option<&'static str> {
+        match self {
+            Self::Nothing | Self::Charts => None,
+            Self::Told(name, _) | Self::First(name, _) | Self::HandedOn(name, _) => Some(name),
+        }
+    }
+}
+
 impl State {
     /// Name and type of the argument.
     pub fn argument(self) -> Option<(&'static str, Space)> {
