@@ -75,15 +75,13 @@ use emit::module;
 use equations::{Equations, Parts, Rotations};
 use groups::Facts;
 use joint_space::{Candidates, Coordinates, JointSpace, obstacle};
-use kernels::Kernels;
-use scheduled::ExactKernel;
+use scheduled::Computed;
 use solve::Solution;
 use solve::dependence::Yielding;
 use solve::forward_dynamics::ForwardDynamics;
 use solve::partition::Partition;
 
 use gyro_model::{AssemblyError, Diagnostics, Model, Output, OutputKind, Start};
-use std::collections::BTreeMap;
 use std::fmt;
 
 /// A generated module.
@@ -108,11 +106,7 @@ pub struct Module {
 impl Module {
     /// Whether the mechanism implements a trait of the run time.
     pub fn implements(&self, name: &str) -> bool {
-        // A long name of the mechanism stands on a line of its own.
-        let of = format!("gyro_sim::{name}");
-        self.code
-            .match_indices(&of)
-            .any(|(at, _)| self.code[at + of.len()..].trim_start().starts_with("for "))
+        self.scheduled.groups.iter().any(|group| group.trait_name() == name)
     }
 
     /// The module as one item, `pub mod name { ... }`, for `include!` (which admits no inner documentation outside a
@@ -234,11 +228,11 @@ pub fn generate_by_effort(
 
 fn write(file_name: &str, model: &Model, asked: (Elimination, &Functions, Effort)) -> Result<Module, Error> {
     let start = model.assemble().map_err(Error::Start)?;
-    let (equations, kernels, exact) = computed(model, asked, &start);
-    let scheduled = Scheduled::of(&equations, &kernels, &exact, &start);
+    let computed = Computed::of(equations(model, asked, &start));
+    let scheduled = Scheduled::of(&computed, &start);
     let type_name = module::type_name(&model.name);
     let module::Text { code, constants, data_sheet } =
-        module::write(file_name, &type_name, (equations, kernels, exact), &start);
+        module::write(file_name, &type_name, &computed, &scheduled);
     Ok(Module { name: model.name.clone(), type_name, code, constants, data_sheet, scheduled })
 }
 
@@ -249,21 +243,8 @@ fn write(file_name: &str, model: &Model, asked: (Elimination, &Functions, Effort
 /// Why no consistent start exists.
 pub fn schedule(model: &Model, functions: &Functions, effort: Effort) -> Result<Scheduled, Error> {
     let start = model.assemble().map_err(Error::Start)?;
-    let (equations, kernels, exact) = computed(model, (Elimination::NullSpace, functions, effort), &start);
-    Ok(Scheduled::of(&equations, &kernels, &exact, &start))
-}
-
-/// What a module computes: as expressions, in final form, and as tapes.
-fn computed<'m>(
-    model: &'m Model,
-    asked: (Elimination, &Functions, Effort),
-    start: &Start,
-) -> (Equations<'m>, Kernels, BTreeMap<Kernel, ExactKernel>) {
-    let mut equations = equations(model, asked, start);
-    let mut kernels = Kernels::of(&equations);
-    kernels.finish(&mut equations.graph, equations.passes);
-    let exact = ExactKernel::all(&equations, &kernels);
-    (equations, kernels, exact)
+    let asked = (Elimination::NullSpace, functions, effort);
+    Ok(Scheduled::of(&Computed::of(equations(model, asked, &start)), &start))
 }
 
 /// From the model to what its module computes: derives, solves and chooses.

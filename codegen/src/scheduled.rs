@@ -4,8 +4,11 @@
 mod functions;
 mod indices;
 
-pub use functions::{Origin, Store, Stored, groups, origin, stores};
-pub use indices::{Index, indices};
+pub use functions::{Origin, Store, Stored};
+pub use indices::Index;
+
+use functions::{groups, origin, stores};
+use indices::indices;
 
 use crate::equations::{Argument, Equations, PartitionForm};
 use crate::expr::constant::Constant;
@@ -99,6 +102,16 @@ pub struct ExactKernel {
     pub repetition: Option<Repetition>,
 }
 
+/// What a module computes.
+#[derive(Debug)]
+pub struct Computed<'m> {
+    pub equations: Equations<'m>,
+    /// Its kernels as expressions, in final form.
+    pub kernels: Kernels,
+    /// The same as tapes.
+    pub exact: BTreeMap<Kernel, ExactKernel>,
+}
+
 /// What a place of a joint state is, in indices of the model and of the bodies that have coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "gyro-sim documents its type of this name")]
@@ -156,13 +169,8 @@ pub struct Scheduled {
 }
 
 impl Scheduled {
-    pub(crate) fn of(
-        equations: &Equations,
-        kernels: &Kernels,
-        exact: &BTreeMap<Kernel, ExactKernel>,
-        start: &Start,
-    ) -> Self {
-        let e = equations;
+    pub(crate) fn of(computed: &Computed, start: &Start) -> Self {
+        let Computed { equations: e, kernels, exact } = computed;
         let pattern = |sparse: &crate::equations::Sparse| {
             sparse.0.iter().map(|&(row, column, _)| (row, column)).collect()
         };
@@ -231,12 +239,17 @@ impl ScheduledKernel {
     }
 }
 
-impl ExactKernel {
-    /// All of a module.
-    pub fn all(equations: &Equations, kernels: &Kernels) -> BTreeMap<Kernel, Self> {
-        kernels.iter().map(|(kernel, _)| (kernel, Self::of(equations, kernels, kernel))).collect()
+impl<'m> Computed<'m> {
+    pub fn of(mut equations: Equations<'m>) -> Self {
+        let mut kernels = Kernels::of(&equations);
+        kernels.finish(&mut equations.graph, equations.passes);
+        let exact = |(kernel, _)| (kernel, ExactKernel::of(&equations, &kernels, kernel));
+        let exact = kernels.iter().map(exact).collect();
+        Self { equations, kernels, exact }
     }
+}
 
+impl ExactKernel {
     fn of(equations: &Equations, kernels: &Kernels, kernel: Kernel) -> Self {
         let (places, roots) = written(equations, kernels, kernel);
         let (tape, repetition) = tape(equations, &roots);
@@ -309,7 +322,7 @@ fn stored(equations: &Equations, kernel: Kernel, roots: &[ExprId]) -> (Vec<usize
 }
 
 /// The maximal state at the start, without work so far.
-pub fn start(model: &Model, start: &Start) -> Vec<f64> {
+fn start(model: &Model, start: &Start) -> Vec<f64> {
     let work = model.has_work().then_some(0.0);
     let turns = model.turn_references();
     let turns = turns.iter().map(|turn| start.joints[turn.joint].position[turn.coordinate]);
@@ -317,7 +330,7 @@ pub fn start(model: &Model, start: &Start) -> Vec<f64> {
 }
 
 /// What stands where in a joint state.
-pub fn places(model: &Model, space: &JointSpace) -> Vec<JointPlace> {
+fn places(model: &Model, space: &JointSpace) -> Vec<JointPlace> {
     let bodies = model.coordinate_bodies();
     let mut places = Vec::new();
     for link in &space.layout.links {

@@ -36,9 +36,9 @@ pub(crate) fn functions(scheduled: &Scheduled, names: &Names<'_>) -> Vec<Functio
     let of_kernel = |kernel| Some(function(scheduled, names, kernel, *scheduled.origins.get(&kernel)?));
     let of_group = |&group: &Group| {
         let first = match (group, &scheduled.joint) {
-            (Group::Mechanism, _) => Some(start(names, ("start", ""), &scheduled.start)),
+            (Group::Mechanism, _) => Some(start(names, "start", "", &scheduled.start)),
             (Group::Joint, Some(joint)) => {
-                Some(start(names, ("joint_start", " in joint coordinates"), &joint.start))
+                Some(start(names, "joint_start", " in joint coordinates", &joint.start))
             }
             _ => None,
         };
@@ -48,14 +48,14 @@ pub(crate) fn functions(scheduled: &Scheduled, names: &Names<'_>) -> Vec<Functio
 }
 
 /// A function that writes constants.
-fn start(names: &Names<'_>, (name, which): (&str, &str), numbers: &[f64]) -> Function {
+fn start(names: &Names<'_>, name: &str, which: &str, numbers: &[f64]) -> Function {
     let mut writer = Writer::new(names, "");
     for (n, number) in numbers.iter().enumerate() {
         // A zero has no sign.
         writer.line(&format!("out[{n}] = {};", names.precision.constant(number + 0.0)));
     }
     let doc = format!("Writes the assembled start{which}.");
-    finished(names, (name.to_owned(), doc), vec![Argument::written("out", numbers.len())], writer.lines)
+    finished(names, name.to_owned(), doc, vec![Argument::written("out", numbers.len())], writer.lines)
 }
 
 fn function(scheduled: &Scheduled, names: &Names<'_>, kernel: Kernel, origin: Origin) -> Function {
@@ -72,24 +72,24 @@ fn function(scheduled: &Scheduled, names: &Names<'_>, kernel: Kernel, origin: Or
         }
         Origin::Idle => format!("{does}: there are none."),
         Origin::Other(other) => {
-            of_other(scheduled, names, [signature, other.signature()], &mut writer);
+            of_other(scheduled, names, signature, other.signature(), &mut writer);
             format!("{does}.")
         }
     };
     let is_on_charts = signature.given == Given::Charts;
     let name = format!("{}{}", kernel.function(), if is_on_charts { "_on" } else { "" });
-    finished(names, (name, doc), arguments(scheduled, signature), writer.lines)
+    finished(names, name, doc, arguments(scheduled, signature), writer.lines)
 }
 
 /// The function whose results a kernel takes, or hands on.
 fn called_first(scheduled: &Scheduled, names: &Names<'_>, kernel: Kernel, writer: &mut Writer<'_>) {
     let Some((buffer, first)) = scheduled.called_first(kernel) else { return };
     let n = first.signature().n_results(&scheduled.counts).unwrap_or(0);
-    filled_by(names, (buffer, n), first.signature(), writer);
+    filled_by(names, buffer, n, first.signature(), writer);
 }
 
 /// An array, and what fills it.
-fn filled_by(names: &Names<'_>, (array, n): (&str, usize), by: &Signature, writer: &mut Writer<'_>) {
+fn filled_by(names: &Names<'_>, array: &str, n: usize, by: &Signature, writer: &mut Writer<'_>) {
     let (state, _) = by.state.argument().expect("it is a function of a state");
     // C has no arrays without elements.
     writer.line(&format!("{} {array}[{}] = {{0}};", names.own("real"), n.max(1)));
@@ -100,7 +100,8 @@ fn filled_by(names: &Names<'_>, (array, n): (&str, usize), by: &Signature, write
 fn of_other(
     scheduled: &Scheduled,
     names: &Names<'_>,
-    [own, other]: [&Signature; 2],
+    own: &Signature,
+    other: &Signature,
     writer: &mut Writer<'_>,
 ) {
     let (out, _) = own.written()[0];
@@ -109,7 +110,7 @@ fn of_other(
         let (state, _) = own.state.argument().expect("it is a function of a state");
         return writer.line(&format!("{}(m, t, {state}, {out});", names.own(other.name)));
     }
-    filled_by(names, ("solved", n_solved), other, writer);
+    filled_by(names, "solved", n_solved, other, writer);
     writer.line(&format!("for (int i = 0; i < {n}; i++) {out}[i] = solved[i];"));
 }
 
@@ -144,7 +145,8 @@ fn arguments(scheduled: &Scheduled, signature: &Signature) -> Vec<Argument> {
 /// A function by its name and documentation, arguments and statements.
 fn finished(
     names: &Names<'_>,
-    (name, doc): (String, String),
+    name: String,
+    doc: String,
     arguments: Vec<Argument>,
     lines: Vec<String>,
 ) -> Function {

@@ -6,15 +6,13 @@ use crate::expr::graph::Graph;
 use crate::expr::rounding::LIKE as ROUNDING;
 use crate::expr::schedule::{Operations, Passes};
 use crate::joint_space::obstacle;
-use crate::kernels::Kernels;
 use crate::repeat::Repetition;
-use crate::scheduled::ExactKernel;
+use crate::scheduled::Computed;
 use crate::simplify::cheapest::{Chosen, Form};
 use crate::simplify::normal_form::Reduction;
 use gyro_model::{Model, RowOwner, Support};
 use gyro_program::Group;
 use gyro_program::Kernel;
-use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// What was generated and what was left out.
@@ -65,11 +63,8 @@ pub struct Function {
 const UNAVAILABLE: &str = "the functions of";
 
 impl DataSheet {
-    pub(crate) fn of(
-        equations: &Equations,
-        kernels: &Kernels,
-        exact: &BTreeMap<Kernel, ExactKernel>,
-    ) -> Self {
+    pub(crate) fn of(computed: &Computed) -> Self {
+        let Computed { equations, kernels, exact } = computed;
         let model = equations.model;
         let bodies = model.coordinate_bodies().into_iter().map(|body| model.bodies[body].name.clone());
         Self {

@@ -1,29 +1,28 @@
 //! The traits of the run time's contract that a module implements, each as the tables of `gyro_program` have it: types,
 //! buffers, functions. What a trait has beside these (layouts, patterns, names) comes from the file of its subject.
 
+use super::patterns::{joint_layout, joint_start};
 use super::writer::ModuleWriter;
 use crate::emit::names::{ident, index};
-use crate::scheduled::{Origin, groups, origin};
-use gyro_model::Start;
+use crate::scheduled::Origin;
 use gyro_program::{Buffer, Group, Kernel, Space};
 use proc_macro2::TokenStream;
 use quote::quote;
 
 impl ModuleWriter<'_> {
     /// All traits that the module has.
-    pub fn contract(&self, start: &Start) -> TokenStream {
-        let groups = groups(self.equations, &self.kernels);
-        groups.into_iter().map(|group| self.implementation(group, start)).collect()
+    pub fn contract(&self) -> TokenStream {
+        self.scheduled.groups.iter().map(|&group| self.implementation(group)).collect()
     }
 
-    fn implementation(&self, group: Group, start: &Start) -> TokenStream {
+    fn implementation(&self, group: Group) -> TokenStream {
         if group == Group::Partition {
             return self.partition();
         }
         let (name, of) = (ident(self.type_name), ident(group.trait_name()));
         let scalar = (group == Group::Mechanism).then(|| quote! { type Scalar = T; });
         let types = Space::of(group).map(|space| self.associated(space));
-        let [before, after, last] = self.beside(group, start);
+        let [before, after, last] = self.beside(group);
         let buffers = Buffer::of(group).map(|buffer| self.buffer(buffer));
         let functions = Kernel::of(group).filter_map(|kernel| self.function_of(kernel));
         quote! {
@@ -40,36 +39,33 @@ impl ModuleWriter<'_> {
     }
 
     /// What a trait has beside types, buffers and functions: before and after the buffers, and at its end.
-    fn beside(&self, group: Group, start: &Start) -> [Option<TokenStream>; 3] {
-        let space = self.equations.joint_space.as_ref();
+    fn beside(&self, group: Group) -> [Option<TokenStream>; 3] {
         match group {
-            Group::Mechanism => [Some(self.description()), Some(self.start(start)), Some(self.set_input())],
+            Group::Mechanism => [Some(self.description()), Some(self.start()), Some(self.set_input())],
             Group::Kinematics => [None, Some(self.patterns()), None],
-            Group::Joint => [
-                space.map(|space| self.joint_layout(space)),
-                space.map(|space| self.joint_start(space)),
-                None,
-            ],
+            Group::Joint => {
+                let joint = self.scheduled.joint.as_ref();
+                [joint.map(joint_layout), joint.map(joint_start), None]
+            }
             Group::Frames => {
+                let space = self.computed.equations.joint_space.as_ref();
                 let names = space.and_then(|space| Some(&space.frames.as_ref()?.names));
-                [
-                    names.map(|names| quote! { fn frame_names(&self) -> &[&str] { &[#(#names),*] } }),
-                    None,
-                    None,
-                ]
+                let function =
+                    |names: &Vec<String>| quote! { fn frame_names(&self) -> &[&str] { &[#(#names),*] } };
+                [names.map(function), None, None]
             }
             Group::MassMatrix => {
-                let order = space.map(|space| space.on_request.mass_order.iter().copied().map(index));
-                [None, order.map(|order| quote! { fn mass_order(&self) -> &[u16] { &[#(#order),*] } }), None]
+                let order = self.scheduled.mass_order.iter().copied().map(index);
+                [None, Some(quote! { fn mass_order(&self) -> &[u16] { &[#(#order),*] } }), None]
             }
             _ => [None, None, None],
         }
     }
 
     fn associated(&self, space: Space) -> TokenStream {
-        let (name, n) = (ident(space.name()), index(space.len(&self.counts)));
+        let (name, n) = (ident(space.name()), index(space.len(self.counts())));
         let doc = (space == Space::Accelerations).then(|| {
-            let doc = match self.equations.n_loop_multipliers() {
+            let doc = match self.counts().accelerations.saturating_sub(6 * self.counts().bodies) {
                 0 => " (s̈, ẇ') of each body.".to_owned(),
                 n => format!(" (s̈, ẇ') of each body, then {n} multipliers of the rows that close loops."),
             };
@@ -80,7 +76,7 @@ impl ModuleWriter<'_> {
 
     fn buffer(&self, buffer: &Buffer) -> TokenStream {
         let function = ident(buffer.function);
-        let zeros = buffer.fields.iter().map(|(_, space)| match space.len(&self.counts) {
+        let zeros = buffer.fields.iter().map(|(_, space)| match space.len(self.counts()) {
             0 if space.is_bare_if_empty() => quote! { [] },
             n => {
                 let n = index(n);
@@ -103,7 +99,7 @@ impl ModuleWriter<'_> {
     fn function_of(&self, kernel: Kernel) -> Option<TokenStream> {
         // The constructor calls it, and it is no function of a trait.
         let kernel = (kernel != Kernel::ParameterSetup).then_some(kernel)?;
-        Some(match origin(self.equations, &self.kernels, kernel)? {
+        Some(match *self.scheduled.origins.get(&kernel)? {
             Origin::Kernel => self.written(kernel),
             Origin::Idle => self.idle(kernel),
             Origin::Other(other) => self.of_other(kernel, other),
@@ -113,8 +109,8 @@ impl ModuleWriter<'_> {
     /// The first results of another function: all, or without the multipliers that come with accelerations.
     fn of_other(&self, kernel: Kernel, other: Kernel) -> TokenStream {
         let [(out, space), ..] = kernel.signature().written()[..] else { return quote! {} };
-        let n = space.len(&self.counts);
-        let n_solved = other.signature().n_results(&self.counts).unwrap_or(n);
+        let n = space.len(self.counts());
+        let n_solved = other.signature().n_results(self.counts()).unwrap_or(n);
         let (name, out, space) = (ident(kernel.name()), ident(out), ident(space.name()));
         let (of, other) = (ident(other.group().trait_name()), ident(other.name()));
         let statements = if n == n_solved {

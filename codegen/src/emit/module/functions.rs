@@ -1,13 +1,13 @@
 //! Functions of the contract, each as its signature says.
 
 use super::writer::ModuleWriter;
-use crate::emit::names::{ident, index};
+use crate::emit::names::{ident, if_read, index};
 use crate::emit::results::{Value, filled, stored};
 use crate::emit::tokens::Body;
-use crate::expr::symbol::Symbol;
-use crate::scheduled::{Store, Stored, stores};
+use crate::equations::Argument;
+use crate::scheduled::{Store, Stored};
 use gyro_program::{Given, Kernel, Outcome, Signature};
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 impl ModuleWriter<'_> {
@@ -15,11 +15,10 @@ impl ModuleWriter<'_> {
     /// underscore.
     pub fn written(&self, kernel: Kernel) -> TokenStream {
         let signature = kernel.signature();
-        let places = self.exact.get(&kernel).map_or(&[][..], |exact| &exact.places);
         self.function(kernel, |body, t, read| {
-            let solved = self.solved(signature, body);
-            let results = self.results(signature, places, body);
-            let has_work = self.counts.work > 0 && matches!(kernel, Kernel::ToMaximal | Kernel::ToJoints);
+            let solved = self.solved(kernel);
+            let results = self.results(signature, body);
+            let has_work = self.counts().work > 0 && matches!(kernel, Kernel::ToMaximal | Kernel::ToJoints);
             let (t, state) = match (&solved, signature.state.argument()) {
                 (Some(_), Some((state, _))) => (&quote! { t }, ident(state)),
                 (None, Some((state, _))) if has_work || signature.result == Outcome::Overwrites => {
@@ -36,7 +35,10 @@ impl ModuleWriter<'_> {
                 }
             }));
             if let Given::Told(name, space) = signature.given {
-                let (name, ty) = (if_read(name, reads_given(body)), ident(space.name()));
+                let (name, ty) = (
+                    if_read(name, self.reads_argument(kernel, &[Argument::Accelerations, Argument::Rows])),
+                    ident(space.name()),
+                );
                 arguments.push(quote! { #name: &Self::#ty });
             }
             if signature.result != Outcome::Overwrites {
@@ -69,15 +71,11 @@ impl ModuleWriter<'_> {
     }
 
     /// What another function computes before this one; nothing if it is not read.
-    fn solved(&self, signature: &Signature, body: &Body) -> Option<TokenStream> {
-        let (buffer, kernel) = match signature.given {
-            Given::HandedOn(buffer, kernel) => (buffer, kernel),
-            Given::First(buffer, kernel) if reads_given(body) => (buffer, kernel),
-            _ => return None,
-        };
-        let (of, function) = (ident(kernel.group().trait_name()), ident(kernel.name()));
-        let (buffer, state) = (ident(buffer), ident(signature.state.argument()?.0));
-        let n = index(kernel.signature().n_results(&self.counts)?);
+    fn solved(&self, kernel: Kernel) -> Option<TokenStream> {
+        let (buffer, first) = self.scheduled.called_first(kernel)?;
+        let (of, function) = (ident(first.group().trait_name()), ident(first.name()));
+        let (buffer, state) = (ident(buffer), ident(first.signature().state.argument()?.0));
+        let n = index(first.signature().n_results(self.counts())?);
         Some(quote! {
             let mut #buffer = [T::constant(0.0); #n];
             gyro_sim::#of::#function(self, t, #state, &mut #buffer);
@@ -85,8 +83,8 @@ impl ModuleWriter<'_> {
     }
 
     /// What hands the results over.
-    fn results(&self, signature: &Signature, places: &[usize], body: &Body) -> TokenStream {
-        let stores = stores(signature, &self.counts, places, body.values.len());
+    fn results(&self, signature: &Signature, body: &Body) -> TokenStream {
+        let stores = self.scheduled.stores(signature.kernel);
         let value = |store: &Store| match store.value {
             Stored::Result(n) => body.values[n].clone(),
             Stored::Element(array, at) => Value::of_named(array, at),
@@ -115,22 +113,4 @@ impl ModuleWriter<'_> {
             Outcome::Vectors | Outcome::Derived => unreachable!("it is no function of a trait"),
         }
     }
-}
-
-/// Whether a body reads what is given beside the state.
-fn reads_given(body: &Body) -> bool {
-    body.symbols.iter().any(|symbol| {
-        matches!(
-            symbol,
-            Symbol::Acceleration { .. }
-                | Symbol::LoopMultiplier(_)
-                | Symbol::RateOfRate(_)
-                | Symbol::Change(_)
-        )
-    })
-}
-
-/// The name of an argument, with a leading underscore if nothing reads it.
-pub fn if_read(name: &str, is_read: bool) -> Ident {
-    if is_read { ident(name) } else { ident(&format!("_{name}")) }
 }

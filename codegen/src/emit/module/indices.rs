@@ -6,15 +6,14 @@
 
 use super::writer::ModuleWriter;
 use crate::emit::names::{ident, index};
-use crate::scheduled::{Index, indices};
+use crate::scheduled::Index;
 use proc_macro2::TokenStream;
 use quote::quote;
 
 impl ModuleWriter<'_> {
     /// Of joint coordinates and rates in the joint state, of inputs, outputs and parameters.
     pub fn indices(&self) -> TokenStream {
-        let indices = indices(self.equations);
-        let kinds = indices.chunk_by(|one, next| one.kind == next.kind).map(|of_kind| {
+        let kinds = self.scheduled.indices.chunk_by(|one, next| one.kind == next.kind).map(|of_kind| {
             let coordinates = of_kind.chunk_by(|one, next| one.coordinate == next.coordinate);
             let content = coordinates.map(|of_coordinate| {
                 let constants = of_coordinate.iter().map(constant);

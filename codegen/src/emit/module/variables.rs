@@ -13,7 +13,7 @@ use quote::quote;
 impl Variables for ModuleWriter<'_> {
     fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>) {
         const AXES: [&str; 3] = ["x", "y", "z"];
-        let body = |moving_body: usize| &self.equations.model.bodies[self.moving_bodies()[moving_body]].name;
+        let body = |moving_body: usize| &self.model().bodies[self.moving_bodies()[moving_body]].name;
         let bound = |name: String| {
             let (buffer, at) = self.element(symbol).expect("it is an element of an argument");
             let (name, buffer, at) = (ident(&name), ident(buffer), index(at));
@@ -30,7 +30,7 @@ impl Variables for ModuleWriter<'_> {
                 (quote! { #name }, Some(quote! { charts[#chart][#k] }))
             }
             Symbol::Parameter(parameter) => {
-                let name = ident(&self.equations.model.parameters[parameter].name);
+                let name = ident(&self.model().parameters[parameter].name);
                 (quote! { self.parameters.#name }, None)
             }
             Symbol::ParameterSetup(place) => {
@@ -38,7 +38,7 @@ impl Variables for ModuleWriter<'_> {
                 (quote! { self.derived[#place] }, None)
             }
             Symbol::Input(input) => {
-                let name = ident(&self.equations.model.inputs[input].name);
+                let name = ident(&self.model().inputs[input].name);
                 (quote! { self.#name }, None)
             }
             Symbol::Turn(turn) => bound(format!("turn{turn}")),
@@ -80,6 +80,6 @@ impl Variables for ModuleWriter<'_> {
             Argument::Accelerations => "accelerations",
             Argument::Rows => "rows",
         };
-        self.equations.element(symbol).map(|(argument, place)| (name(argument), place))
+        self.computed.equations.element(symbol).map(|(argument, place)| (name(argument), place))
     }
 }

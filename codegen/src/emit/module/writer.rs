@@ -4,18 +4,18 @@ use super::tables;
 use crate::emit::data_sheet::printable;
 use crate::emit::literals::Literals;
 use crate::emit::loops;
-use crate::emit::names::{ident, index};
+use crate::emit::names::{ident, if_read, index};
 use crate::emit::tokens::{self, Body};
-use crate::equations::Equations;
+use crate::equations::Argument;
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
-use crate::kernels::Kernels;
-use crate::scheduled::ExactKernel;
+use crate::scheduled::{Computed, ExactKernel, Scheduled, Variable};
 use crate::tape;
+use gyro_model::Model;
 use gyro_program::{Counts, Kernel};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 fn table_of(symbol: &Symbol) -> Option<usize> {
     if let Symbol::Table { table, .. } = symbol { Some(*table) } else { None }
@@ -33,19 +33,25 @@ fn evaluated_table(table: usize) -> TokenStream {
 
 /// What the parts of a module are written from.
 pub struct ModuleWriter<'a> {
-    pub equations: &'a Equations<'a>,
-    pub counts: Counts,
+    pub computed: &'a Computed<'a>,
     pub type_name: &'a str,
-    pub kernels: Kernels,
     /// Exact constants of all functions.
     pub literals: Literals,
-    /// What is written of each kernel.
-    pub exact: BTreeMap<Kernel, ExactKernel>,
+    /// The mechanism as data.
+    pub scheduled: &'a Scheduled,
 }
 
 impl ModuleWriter<'_> {
+    pub fn model(&self) -> &Model {
+        self.computed.equations.model
+    }
+
     pub fn moving_bodies(&self) -> Vec<usize> {
-        self.equations.model.coordinate_bodies()
+        self.model().coordinate_bodies()
+    }
+
+    pub fn counts(&self) -> &Counts {
+        &self.scheduled.counts
     }
 
     fn body(&self, kernel: &tape::Kernel<Symbol, Constant>) -> Body {
@@ -62,7 +68,7 @@ impl ModuleWriter<'_> {
 
     /// Knots and pieces of each table, without their numbers.
     pub fn tables_of_motions(&self) -> TokenStream {
-        let tables = self.equations.tables.iter().enumerate().map(|(table, spline)| {
+        let tables = self.scheduled.curves.iter().enumerate().map(|(table, spline)| {
             let (knots, pieces) = table_names(table);
             let (n_knots, n_pieces) = (index(spline.knots.len()), index(spline.pieces.len()));
             let doc = format!(" Times of the points of `{}`, s.", printable(&spline.source));
@@ -83,32 +89,29 @@ impl ModuleWriter<'_> {
         write: impl Fn(&Body, &TokenStream, &Ident) -> TokenStream,
     ) -> TokenStream {
         let nothing = ExactKernel::default();
-        let exact = self.exact.get(&kernel).unwrap_or(&nothing);
+        let exact = self.computed.exact.get(&kernel).unwrap_or(&nothing);
         let body = self.body(&exact.tape);
-        let reads_state = body.symbols.iter().any(|symbol| {
-            matches!(
-                symbol,
-                Symbol::Position { .. }
-                    | Symbol::Euler { .. }
-                    | Symbol::Velocity { .. }
-                    | Symbol::Spin { .. }
-                    | Symbol::Turn(_)
-            )
-        });
-        let t = if body.symbols.iter().any(|s| matches!(s, Symbol::Time | Symbol::Table { .. })) {
-            quote! { t }
-        } else {
-            quote! { _t }
-        };
-        let reads_joints =
-            body.symbols.iter().any(|symbol| matches!(symbol, Symbol::Coordinate(_) | Symbol::Rate(_)));
-        let y = ident(match (reads_state, reads_joints) {
+        let of_time = |read: &Variable| matches!(read, Variable::Time | Variable::Curve { .. });
+        let t = if_read("t", self.reads(kernel, of_time));
+        let reads = |argument| self.reads_argument(kernel, &[argument]);
+        let y = ident(match (reads(Argument::State), reads(Argument::Joints)) {
             (true, _) => "y",
             (false, true) => "x",
             (false, false) => "_y",
         });
         let doc = format!(" {}: {}.", kernel.signature().does_in_rust(), exact.operations);
-        let function = write(&body, &t, &y);
+        let function = write(&body, &quote! { #t }, &y);
         quote! { #[doc = #doc] #function }
+    }
+
+    /// Whether a kernel reads such a variable.
+    pub fn reads(&self, kernel: Kernel, is_such: impl Fn(&Variable) -> bool) -> bool {
+        self.scheduled.kernels.get(&kernel).is_some_and(|kernel| kernel.variables().any(is_such))
+    }
+
+    /// Whether a kernel reads one of these arguments.
+    pub fn reads_argument(&self, kernel: Kernel, arguments: &[Argument]) -> bool {
+        let kernel = self.scheduled.kernels.get(&kernel);
+        kernel.is_some_and(|kernel| arguments.iter().any(|&argument| kernel.reads(argument)))
     }
 }
