@@ -9,6 +9,7 @@ use crate::args::{CArgs, ExportArgs, Precision, Target};
 use crate::contacts;
 use crate::controllers;
 use crate::failure::Failure;
+use crate::files;
 use crate::generate::{Asked, modules};
 use crate::paths;
 use crate::progress::Spinner;
@@ -42,8 +43,8 @@ fn c(args: &CArgs) -> Result<(), Failure> {
     controllers::say_left_out(&model, "the exported code");
     contacts::say_left_out(&model, "the exported code");
     paths::refuse(&model, "exported code")?;
-    let exported = gyro_export::c(&model, &module.code, numbers(args.precision))
-        .map_err(|e| unwritten(&args.model, &e))?;
+    let (page, precision) = (files::shown(&args.model), numbers(args.precision));
+    let exported = gyro_export::c(&page, &model, &module.scheduled, precision);
     prove(&args.model, (&model, &module), &exported)?;
     let place = |name: String| args.out.join(name);
     let header = place(format!("{}.h", module.name));
@@ -87,10 +88,6 @@ fn numbers(precision: Precision) -> gyro_export::Precision {
         Precision::F32 => gyro_export::Precision::F32,
         Precision::F64 => gyro_export::Precision::F64,
     }
-}
-
-fn unwritten(path: &Path, error: &gyro_export::Error) -> Failure {
-    Failure::Run(format!("{}: {error}: please report it", path.display()))
 }
 
 /// Whether the C text is what was proved of the module.

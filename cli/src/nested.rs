@@ -392,7 +392,6 @@ fn listen(output: &mut impl BufRead, tell: &mut impl FnMut(Event<'_>)) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gyro_codegen::DataSheet;
     use gyro_runner::{Coordinates, Correction, Sample};
 
     type Heard = Result<Option<Answer>, Failure>;
@@ -445,13 +444,9 @@ mod tests {
 
     #[test]
     fn a_package_is_named_by_its_contents() {
-        let module = |code: &str| Module {
-            name: "top".to_owned(),
-            type_name: "Top".to_owned(),
-            code: code.to_owned(),
-            constants: String::new(),
-            data_sheet: DataSheet::default(),
-        };
+        let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/pendulum.toml");
+        let top = gyro_codegen::generate("top.toml", &fs::read_to_string(page).unwrap()).unwrap();
+        let module = |code: &str| Module { name: "top".to_owned(), code: code.to_owned(), ..top.clone() };
         let package = |code, precision, runs| Package::program(&module(code), precision, runs).name;
         let name = |code, precision| package(code, precision, None);
         assert_eq!(name("a", Precision::F64), name("a", Precision::F64));

@@ -54,7 +54,7 @@ mod solve;
 pub mod tape;
 
 pub use effort::Effort;
-pub use emit::data_sheet::{DataSheet, Function, large};
+pub use emit::data_sheet::{DataSheet, Function, large, shown_name};
 pub use equations::Argument;
 pub use equations::PartitionForm;
 pub use expr::rounding::LIKE as ROUNDING;
@@ -62,7 +62,9 @@ pub use expr::schedule::{Operations, Passes};
 pub use groups::Functions;
 pub use gyro_program::{Group, Kernel};
 pub use repeat::Repetition;
-pub use scheduled::{JointForm, JointPlace, Scheduled, ScheduledKernel, Variable};
+pub use scheduled::{
+    Index, JointForm, JointPlace, Origin, Scheduled, ScheduledKernel, Store, Stored, Variable,
+};
 pub use selection::UnknownFunction;
 pub use simplify::cheapest::Form;
 pub use simplify::normal_form::Reduction;
@@ -73,7 +75,7 @@ use emit::module;
 use equations::{Equations, Parts, Rotations};
 use groups::Facts;
 use joint_space::{Candidates, Coordinates, JointSpace, obstacle};
-use kernels::Kernels;
+use scheduled::Computed;
 use solve::Solution;
 use solve::dependence::Yielding;
 use solve::forward_dynamics::ForwardDynamics;
@@ -83,7 +85,7 @@ use gyro_model::{AssemblyError, Diagnostics, Model, Output, OutputKind, Start};
 use std::fmt;
 
 /// A generated module.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Module {
     /// Name of the module: the model's, in `snake_case`.
     pub name: String,
@@ -97,16 +99,14 @@ pub struct Module {
     pub constants: String,
     /// What was generated, as data: the head of the file shows it.
     pub data_sheet: DataSheet,
+    /// The same mechanism as data, operation for operation: what is written in other languages is written from this.
+    pub scheduled: Scheduled,
 }
 
 impl Module {
     /// Whether the mechanism implements a trait of the run time.
     pub fn implements(&self, name: &str) -> bool {
-        // A long name of the mechanism stands on a line of its own.
-        let of = format!("gyro_sim::{name}");
-        self.code
-            .match_indices(&of)
-            .any(|(at, _)| self.code[at + of.len()..].trim_start().starts_with("for "))
+        self.scheduled.groups.iter().any(|group| group.trait_name() == name)
     }
 
     /// The module as one item, `pub mod name { ... }`, for `include!` (which admits no inner documentation outside a
@@ -228,26 +228,23 @@ pub fn generate_by_effort(
 
 fn write(file_name: &str, model: &Model, asked: (Elimination, &Functions, Effort)) -> Result<Module, Error> {
     let start = model.assemble().map_err(Error::Start)?;
-    let mut equations = equations(model, asked, &start);
-    let mut kernels = Kernels::of(&equations);
-    kernels.finish(&mut equations.graph, equations.passes);
+    let computed = Computed::of(equations(model, asked, &start));
+    let scheduled = Scheduled::of(&computed, &start);
     let type_name = module::type_name(&model.name);
     let module::Text { code, constants, data_sheet } =
-        module::write(file_name, &type_name, (&equations, kernels), &start);
-    Ok(Module { name: model.name.clone(), type_name, code, constants, data_sheet })
+        module::write(file_name, &type_name, &computed, &scheduled);
+    Ok(Module { name: model.name.clone(), type_name, code, constants, data_sheet, scheduled })
 }
 
-/// The kernels of a model as data, with given functions and effort: what [`generate_by_effort`] writes as text,
-/// operation for operation.
+/// The kernels of a model as data, with given functions and effort: what [`generate_by_effort`] gives beside the text,
+/// without that.
 ///
 /// # Errors
 /// Why no consistent start exists.
 pub fn schedule(model: &Model, functions: &Functions, effort: Effort) -> Result<Scheduled, Error> {
     let start = model.assemble().map_err(Error::Start)?;
-    let mut equations = equations(model, (Elimination::NullSpace, functions, effort), &start);
-    let mut kernels = Kernels::of(&equations);
-    kernels.finish(&mut equations.graph, equations.passes);
-    Ok(Scheduled::of(&equations, &kernels, &start))
+    let asked = (Elimination::NullSpace, functions, effort);
+    Ok(Scheduled::of(&Computed::of(equations(model, asked, &start)), &start))
 }
 
 /// From the model to what its module computes: derives, solves and chooses.

@@ -1,9 +1,19 @@
 //! A mechanism as data: its kernels as tapes, and what solvers have to know of them. The text of a module is written
 //! from this, and whoever compiles or interprets kernels by other means works from the same operations.
 
+mod functions;
+mod indices;
+
+pub use functions::{Origin, Store, Stored};
+pub use indices::Index;
+
+use functions::{groups, origin, stores};
+use indices::indices;
+
 use crate::equations::{Argument, Equations, PartitionForm};
 use crate::expr::constant::Constant;
 use crate::expr::graph::{ExprId, Node};
+use crate::expr::schedule::Operations;
 use crate::expr::symbol::Symbol;
 use crate::groups::Functions;
 use crate::joint_space::JointSpace;
@@ -11,7 +21,7 @@ use crate::kernels::Kernels;
 use crate::repeat::{self, Local, Repetition};
 use crate::tape;
 use gyro_model::{Attachment, JointCoordinate, Model, Spline, Start};
-use gyro_program::{Counts, Kernel};
+use gyro_program::{Counts, Given, Group, Kernel, Space};
 use std::collections::BTreeMap;
 
 /// A number that a kernel reads.
@@ -70,13 +80,36 @@ pub enum Variable {
 }
 
 /// A kernel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScheduledKernel {
     /// What it computes. Constants are rounded.
     pub tape: tape::Kernel<Variable, f64>,
     /// Where each result stands in what the function of this name writes, whose other elements it keeps or computes by
     /// other means; empty where results stand one after the other.
     pub places: Vec<usize>,
+    /// Operations that it does.
+    pub operations: Operations,
+}
+
+/// A kernel as a module's text has it: with exact constants.
+#[derive(Debug, Default)]
+pub struct ExactKernel {
+    pub tape: tape::Kernel<Symbol, Constant>,
+    /// As those of [`ScheduledKernel`].
+    pub places: Vec<usize>,
+    pub operations: Operations,
+    /// How it is written if it has loops.
+    pub repetition: Option<Repetition>,
+}
+
+/// What a module computes.
+#[derive(Debug)]
+pub struct Computed<'m> {
+    pub equations: Equations<'m>,
+    /// Its kernels as expressions, in final form.
+    pub kernels: Kernels,
+    /// The same as tapes.
+    pub exact: BTreeMap<Kernel, ExactKernel>,
 }
 
 /// What a place of a joint state is, in indices of the model and of the bodies that have coordinates.
@@ -111,6 +144,12 @@ pub struct Scheduled {
     pub functions: Functions,
     /// Its kernels. What computes nothing is not there.
     pub kernels: BTreeMap<Kernel, ScheduledKernel>,
+    /// The groups of functions that it has, in the order of a module's text.
+    pub groups: Vec<Group>,
+    /// How each of their functions comes about; what serves every mechanism is not there.
+    pub origins: BTreeMap<Kernel, Origin>,
+    /// Where numbers stand, by name.
+    pub indices: Vec<Index>,
     /// How many things of each kind the mechanism has.
     pub counts: Counts,
     /// How the partition goes, where it is asked for.
@@ -130,14 +169,19 @@ pub struct Scheduled {
 }
 
 impl Scheduled {
-    pub(crate) fn of(equations: &Equations, kernels: &Kernels, start: &Start) -> Self {
-        let e = equations;
+    pub(crate) fn of(computed: &Computed, start: &Start) -> Self {
+        let Computed { equations: e, kernels, exact } = computed;
         let pattern = |sparse: &crate::equations::Sparse| {
             sparse.0.iter().map(|&(row, column, _)| (row, column)).collect()
         };
+        let groups = groups(e, kernels);
+        let functions = groups.iter().flat_map(|&group| Kernel::of(group));
         Self {
             functions: e.functions.clone(),
-            kernels: kernels.iter().map(|(kernel, _)| (kernel, scheduled(e, kernels, kernel))).collect(),
+            kernels: exact.iter().map(|(&kernel, exact)| (kernel, exact.rounded(e))).collect(),
+            origins: functions.filter_map(|kernel| Some((kernel, origin(e, kernels, kernel)?))).collect(),
+            groups,
+            indices: indices(e),
             counts: e.counts(),
             partition: e.partition_form(),
             phi_q_pattern: pattern(&e.phi_q),
@@ -150,6 +194,73 @@ impl Scheduled {
                 .map_or(Vec::new(), |space| space.on_request.mass_order.clone()),
             curves: e.tables.iter().map(|&table| table.clone()).collect(),
         }
+    }
+
+    /// How many numbers an array holds: none where the mechanism does not have its group.
+    pub fn len(&self, space: Space) -> usize {
+        if self.groups.contains(&space.group()) { space.len(&self.counts) } else { 0 }
+    }
+
+    /// How many results a kernel has.
+    pub fn n_results(&self, kernel: Kernel) -> usize {
+        self.kernels.get(&kernel).map_or(0, |kernel| kernel.tape.results.len())
+    }
+
+    /// What a function with a kernel of its own stores.
+    pub fn stores(&self, kernel: Kernel) -> Vec<Store> {
+        let places = self.kernels.get(&kernel).map_or(&[][..], |kernel| &kernel.places);
+        stores(kernel.signature(), &self.counts, places, self.n_results(kernel))
+    }
+
+    /// The function that is called before a kernel is computed, and what the array is called that it fills.
+    pub fn called_first(&self, kernel: Kernel) -> Option<(&'static str, Kernel)> {
+        let reads = || self.kernels.get(&kernel).is_some_and(|kernel| kernel.reads(Argument::Accelerations));
+        match kernel.signature().given {
+            Given::HandedOn(buffer, first) => Some((buffer, first)),
+            Given::First(buffer, first) if reads() => Some((buffer, first)),
+            _ => None,
+        }
+    }
+}
+
+impl ScheduledKernel {
+    /// The variables that it reads, as often as it reads them.
+    pub fn variables(&self) -> impl Iterator<Item = &Variable> {
+        let bodies = self.tape.loops.iter().map(|each| &each.body);
+        [&self.tape.outside].into_iter().chain(bodies).flat_map(tape::Tape::variables)
+    }
+
+    /// Whether it reads an argument.
+    pub fn reads(&self, argument: Argument) -> bool {
+        self.variables().any(|variable| match variable {
+            Variable::Element(of, _) | Variable::Strided { argument: of, .. } => *of == argument,
+            _ => false,
+        })
+    }
+}
+
+impl<'m> Computed<'m> {
+    pub fn of(mut equations: Equations<'m>) -> Self {
+        let mut kernels = Kernels::of(&equations);
+        kernels.finish(&mut equations.graph, equations.passes);
+        let exact = |(kernel, _)| (kernel, ExactKernel::of(&equations, &kernels, kernel));
+        let exact = kernels.iter().map(exact).collect();
+        Self { equations, kernels, exact }
+    }
+}
+
+impl ExactKernel {
+    fn of(equations: &Equations, kernels: &Kernels, kernel: Kernel) -> Self {
+        let (places, roots) = written(equations, kernels, kernel);
+        let (tape, repetition) = tape(equations, &roots);
+        let operations = repetition
+            .map_or_else(|| Operations::count(&equations.graph, &roots), |repetition| repetition.operations);
+        Self { tape, places, operations, repetition }
+    }
+
+    fn rounded(&self, equations: &Equations) -> ScheduledKernel {
+        let (places, operations) = (self.places.clone(), self.operations);
+        ScheduledKernel { tape: rounded(equations, &self.tape), places, operations }
     }
 }
 
@@ -167,13 +278,8 @@ impl JointForm {
     }
 }
 
-fn scheduled(equations: &Equations, kernels: &Kernels, kernel: Kernel) -> ScheduledKernel {
-    let (places, roots) = written(equations, kernels, kernel);
-    ScheduledKernel { tape: rounded(equations, &tape(equations, &roots).0), places }
-}
-
 /// What a kernel writes, with its places in the state if these are not all of them.
-pub fn written(equations: &Equations, kernels: &Kernels, kernel: Kernel) -> (Vec<usize>, Vec<ExprId>) {
+fn written(equations: &Equations, kernels: &Kernels, kernel: Kernel) -> (Vec<usize>, Vec<ExprId>) {
     use Kernel::{
         ClosePositions, CloseVelocities, CorrectedDerivative, Derivative, JointDerivative, NewtonStep,
         SolveVelocities, ToMaximal,
@@ -183,7 +289,7 @@ pub fn written(equations: &Equations, kernels: &Kernels, kernel: Kernel) -> (Vec
     let n_bodies = equations.n_moving_bodies();
     let n_rates = equations.joint_space.as_ref().map_or(0, |space| space.layout.n_rates);
     match kernel {
-        NewtonStep | SolveVelocities | ClosePositions | CloseVelocities => stores(equations, kernel, roots),
+        NewtonStep | SolveVelocities | ClosePositions | CloseVelocities => stored(equations, kernel, roots),
         Derivative | CorrectedDerivative => without(7 * n_bodies, 6 * n_bodies),
         JointDerivative => without(equations.n_coordinates(), n_rates),
         ToMaximal => without(13 * n_bodies, usize::from(equations.power.is_some())),
@@ -192,7 +298,7 @@ pub fn written(equations: &Equations, kernels: &Kernels, kernel: Kernel) -> (Vec
 }
 
 /// The tape of a kernel, and how it is written if it has loops.
-pub fn tape(equations: &Equations, roots: &[ExprId]) -> (tape::Kernel<Symbol, Constant>, Option<Repetition>) {
+fn tape(equations: &Equations, roots: &[ExprId]) -> (tape::Kernel<Symbol, Constant>, Option<Repetition>) {
     let element = |symbol| equations.element(symbol);
     match repeat::rolled(&equations.graph, roots, &element, equations.effort) {
         Some(rolled) => (tape::looped(&rolled), Some(rolled.repetition())),
@@ -201,7 +307,7 @@ pub fn tape(equations: &Equations, roots: &[ExprId]) -> (tape::Kernel<Symbol, Co
 }
 
 /// What a kernel that overwrites part of a state stores, by its place there: what keeps its value is not stored again.
-pub fn stores(equations: &Equations, kernel: Kernel, roots: &[ExprId]) -> (Vec<usize>, Vec<ExprId>) {
+fn stored(equations: &Equations, kernel: Kernel, roots: &[ExprId]) -> (Vec<usize>, Vec<ExprId>) {
     let (argument, first) = match kernel {
         Kernel::NewtonStep => (Argument::State, 0),
         Kernel::SolveVelocities => (Argument::State, 7 * equations.n_moving_bodies()),
@@ -216,7 +322,7 @@ pub fn stores(equations: &Equations, kernel: Kernel, roots: &[ExprId]) -> (Vec<u
 }
 
 /// The maximal state at the start, without work so far.
-pub fn start(model: &Model, start: &Start) -> Vec<f64> {
+fn start(model: &Model, start: &Start) -> Vec<f64> {
     let work = model.has_work().then_some(0.0);
     let turns = model.turn_references();
     let turns = turns.iter().map(|turn| start.joints[turn.joint].position[turn.coordinate]);
@@ -224,7 +330,7 @@ pub fn start(model: &Model, start: &Start) -> Vec<f64> {
 }
 
 /// What stands where in a joint state.
-pub fn places(model: &Model, space: &JointSpace) -> Vec<JointPlace> {
+fn places(model: &Model, space: &JointSpace) -> Vec<JointPlace> {
     let bodies = model.coordinate_bodies();
     let mut places = Vec::new();
     for link in &space.layout.links {

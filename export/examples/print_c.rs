@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut model = gyro_model::read_with(&page, &text, &mut load).map_err(|e| format!("{e}"))?;
         model.functions.get_or_insert_with(|| vec!["all".to_owned()]);
         let module = gyro_codegen::generate_model(&page, &model)?;
-        let exported = gyro_export::c(&model, &module.code, precision)?;
+        let exported = gyro_export::c(&page, &model, &module.scheduled, precision);
         for (extension, text) in [("h", &exported.header), ("c", &exported.source)] {
             std::fs::write(Path::new(&out).join(format!("{}.{extension}", module.name)), text)?;
         }

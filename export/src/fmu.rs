@@ -5,10 +5,12 @@
 
 mod variables;
 
-use crate::module::Module;
 use crate::names::Names;
-use crate::{Error, Precision, text};
+use crate::text::Writer as Text;
+use crate::{Error, Precision};
+use gyro_codegen::Scheduled;
 use gyro_model::Model;
+use gyro_program::{Kernel, Space};
 use quick_xml::Writer;
 use quick_xml::events::BytesText;
 use std::fmt::Write as _;
@@ -63,23 +65,22 @@ const HEADERS: [(&str, &str); 3] = [
     ("fmi3Functions.h", include_str!("../c/fmi/fmi3Functions.h")),
 ];
 
-/// Writes a module as an FMU. `code` is the text of the module that was generated of the model, with the functions
-/// `joint_outputs` and `output_derivatives` where the model has outputs.
+/// Writes a mechanism as an FMU: what was generated of the model, with the functions `joint_outputs` and
+/// `output_derivatives` where the model has outputs.
 ///
 /// # Errors
-/// A mechanism without joint coordinates; what else of the module cannot be written in C.
-pub fn fmu(model: &Model, code: &str, settings: &Settings) -> Result<Fmu, Error> {
-    let module = Module::read(code)?;
-    if module.size("Joints") == 0 {
+/// A mechanism without joint coordinates, or without these functions.
+pub fn fmu(model: &Model, scheduled: &Scheduled, settings: &Settings) -> Result<Fmu, Error> {
+    let text = Text::new(&model.name, model, scheduled, Precision::F64);
+    if !text.has_solver() {
         return Err(Error("it has no joint coordinates, which an FMU integrates".to_owned()));
     }
-    let c = text::written(model, &module, (&model.name, Precision::F64))?;
-    let unit = Unit::of(model, &module, settings)?;
+    let c = text.written();
+    let unit = Unit::of(model, scheduled, settings)?;
     let name = &model.name;
     let source = |file: &str| format!("{SOURCES}/{file}");
     let sources = vec![source("fmi3.c"), source(&format!("{name}.c"))];
-    let names = Names::new(name, Precision::F64, &module.indices);
-    let wrapper = unit.wrapper(&names);
+    let wrapper = unit.wrapper(&text.names);
     let mut files = vec![
         ("modelDescription.xml".to_owned(), written(|xml| unit.description(xml))?),
         (source("buildDescription.xml"), written(|xml| unit.build(xml))?),
@@ -105,29 +106,33 @@ struct Unit<'a> {
 type Xml = Writer<Vec<u8>>;
 
 impl<'a> Unit<'a> {
-    fn of(model: &'a Model, module: &Module, settings: &'a Settings) -> Result<Self, Error> {
+    fn of(model: &'a Model, scheduled: &Scheduled, settings: &'a Settings) -> Result<Self, Error> {
         let has_outputs = !settings.outputs.is_empty();
-        let computes = |names: &[&str]| names.iter().all(|name| module.computes(name));
-        if has_outputs && !computes(&["joint_outputs"]) {
+        let computes = |kernels: &[Kernel]| kernels.iter().all(|of| scheduled.origins.contains_key(of));
+        if has_outputs && !computes(&[Kernel::JointOutputs]) {
             return Err(Error("outputs without the function joint_outputs".to_owned()));
         }
-        let has_jacobian = computes(&["joint_jacobian"]);
+        let has_jacobian = computes(&[Kernel::JointJacobian]);
         let has_slopes = has_jacobian
             && (!has_outputs
-                || computes(&["outputs_by_state", "outputs_by_accelerations", "outputs_by_inputs"]));
+                || computes(&[
+                    Kernel::OutputsByState,
+                    Kernel::OutputsByAccelerations,
+                    Kernel::OutputsByInputs,
+                ]));
         Ok(Self {
             model,
             settings,
-            variables: variables(model, module, settings)?,
+            variables: variables(model, scheduled, settings)?,
             n_work: usize::from(model.has_work()),
-            has_loops: !module.closure_rows.is_empty(),
+            has_loops: scheduled.len(Space::Closure) > 0,
             has_slopes,
             has_jacobian,
         })
     }
 
     /// The C around the functions.
-    fn wrapper(&self, names: &Names) -> String {
+    fn wrapper(&self, names: &Names<'_>) -> String {
         let flag = u8::from;
         let mut text = format!("/* {} as a unit of FMI 3.0: around its functions. */\n\n", self.model.name);
         let _ = write!(text, "#include \"{}.h\"\n#include \"fmi3Functions.h\"\n\n", self.model.name);

@@ -1,23 +1,23 @@
 //! Generated modules in C99: a header and one source, which has the whole solver; and what is made of these.
 //!
-//! A module is read back as Rust, statement by statement, and each statement is written in C: what was proved of the
-//! Rust text holds for the C text as far as the two agree, and `gyro_verifier` reads the C text back to see that they
-//! do. The run time around the kernels is C of its own (the folder `c`), with the same operations in the same order as
-//! `gyro-sim`, so that both compute the same bits.
+//! What the generator gives as data ([`gyro_codegen::Scheduled`]) is printed, operation for operation: nothing is
+//! derived, scheduled or rounded here, and `gyro_verifier` reads the C text back to see that it is what was proved of
+//! the Rust text. The run time around the kernels is C of its own (the folder `c`), with the same operations in the same
+//! order as `gyro-sim`, so that both compute the same bits.
 #![deny(missing_docs)]
 
 mod expressions;
 pub mod fmu;
 mod functions;
-mod module;
+mod kernels;
 mod names;
 mod runtime;
 mod text;
 pub mod wasm;
 
+use gyro_codegen::Scheduled;
 use gyro_model::Model;
 use gyro_program::elementary::Function;
-use quote::ToTokens;
 use std::fmt;
 
 /// The number type of the C text.
@@ -38,18 +38,22 @@ impl Precision {
         }
     }
 
-    /// What rounds a `double` to it, if anything does.
-    fn cast(self) -> Option<&'static str> {
+    /// A `double`, rounded to it.
+    fn rounded(self, number: String) -> String {
         match self {
-            Self::F64 => None,
-            Self::F32 => Some("K"),
+            Self::F64 => number,
+            Self::F32 => format!("K({number})"),
         }
     }
 
-    /// An elementary function by its name in Rust and the number of its operands.
-    fn function(self, name: &str, arity: usize) -> Option<&'static str> {
-        let function = Function::named(name).filter(|function| function.arity() == arity)?;
-        Some(function.properties().in_c[self as usize])
+    /// A constant.
+    fn constant(self, value: f64) -> String {
+        self.rounded(format!("{value:?}"))
+    }
+
+    /// C's name of an elementary function.
+    fn function(self, function: Function) -> &'static str {
+        function.properties().in_c[self as usize]
     }
 }
 
@@ -65,16 +69,9 @@ pub struct Exported {
     pub source: String,
 }
 
-/// What of a module cannot be written in C.
+/// Why a mechanism cannot be exported.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error(pub(crate) String);
-
-impl Error {
-    fn unknown(what: &str, tokens: &impl ToTokens) -> Self {
-        let text: String = tokens.to_token_stream().to_string().chars().take(200).collect();
-        Self(format!("{what} that C has no words for: {text}"))
-    }
-}
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -84,10 +81,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Writes a module in C. `code` is the text of the module that was generated of the model.
-///
-/// # Errors
-/// What the module has that cannot be written: no module of the generator has such.
-pub fn c(model: &Model, code: &str, precision: Precision) -> Result<Exported, Error> {
-    text::written(model, &module::Module::read(code)?, (text::page(model, code), precision))
+/// Writes a mechanism in C: what was generated of the model whose file has this name.
+pub fn c(file_name: &str, model: &Model, scheduled: &Scheduled, precision: Precision) -> Exported {
+    text::Writer::new(file_name, model, scheduled, precision).written()
 }

@@ -1,27 +1,44 @@
-//! How things of a module are called in C.
+//! How things of a mechanism are called in C.
 
 use crate::Precision;
-use std::collections::BTreeMap;
+use gyro_codegen::{Argument, Index, Scheduled, Variable};
+use gyro_model::Model;
 
 /// Names of one exported mechanism.
 #[derive(Debug)]
-pub(crate) struct Names {
+pub(crate) struct Names<'a> {
     /// The model's name, which begins the name of everything that can be seen from elsewhere.
-    pub(crate) prefix: String,
+    pub(crate) prefix: &'a str,
     pub(crate) precision: Precision,
-    constants: BTreeMap<Vec<String>, String>,
+    indices: &'a [Index],
+    /// Of the indices, in their order.
+    constants: Vec<String>,
+    /// Of those that have coordinates.
+    pub(crate) bodies: Vec<&'a str>,
+    n_coordinates: usize,
+    first_turn: usize,
 }
 
-impl Names {
+impl<'a> Names<'a> {
     /// With the named places; where two names would be put together to the same one, the later gets a number.
-    pub(crate) fn new(prefix: &str, precision: Precision, indices: &[(Vec<String>, usize)]) -> Self {
-        let mut names = Self { prefix: prefix.to_owned(), precision, constants: BTreeMap::new() };
-        for (path, _) in indices {
-            let first = names.upper(&path.join("_"));
-            let is_taken = |name: &String| names.constants.values().any(|known| known == name);
+    pub(crate) fn new(model: &'a Model, scheduled: &'a Scheduled, precision: Precision) -> Self {
+        let bodies = model.coordinate_bodies().into_iter().map(|body| model.bodies[body].name.as_str());
+        let counts = &scheduled.counts;
+        let mut names = Self {
+            prefix: &model.name,
+            precision,
+            indices: &scheduled.indices,
+            constants: Vec::new(),
+            bodies: bodies.collect(),
+            n_coordinates: counts.coordinates,
+            first_turn: 13 * counts.bodies + counts.work,
+        };
+        for index in names.indices {
+            let first = names.upper(&format!("{}_{}", index.kind, within_kind(index)));
+            let is_taken = |name: &String| names.constants.contains(name);
             let numbered = (2..).map(|n: usize| format!("{first}_{n}"));
             let name = std::iter::once(first.clone()).chain(numbered).find(|name| !is_taken(name));
-            names.constants.extend(name.map(|name| (path.clone(), name)));
+            names.constants.extend(name);
         }
         names
     }
@@ -36,17 +53,55 @@ impl Names {
         format!("{}_{name}", self.prefix)
     }
 
-    /// The name of a place, `["input", "torque"]`, in any case.
-    pub(crate) fn constant(&self, path: &[&str]) -> String {
-        let (last, above) = path.split_last().expect("a place has a name");
-        let path: Vec<String> =
-            above.iter().map(|part| (*part).to_owned()).chain([last.to_uppercase()]).collect();
-        self.constants.get(&path).cloned().unwrap_or_else(|| self.upper(&path.join("_")))
+    /// The named places of a kind, with their constants.
+    pub(crate) fn of_kind(&self, kind: &str) -> impl Iterator<Item = (&Index, &str)> {
+        let all = self.indices.iter().zip(self.constants.iter().map(String::as_str));
+        all.filter(move |(index, _)| index.kind == kind)
     }
 
-    /// A local variable or an argument; the leading underscore of one that is not read is Rust's.
-    pub(crate) fn variable(&self, name: &str) -> String {
-        name.trim_start_matches('_').to_owned()
+    /// The constant of a place.
+    fn constant(&self, kind: &str, place: usize) -> &str {
+        let found = self.of_kind(kind).find(|(index, _)| index.place == place);
+        found.expect("all parameters and inputs have names").1
+    }
+
+    /// A variable outside of loops.
+    pub(crate) fn variable(&self, variable: Variable) -> String {
+        match variable {
+            Variable::Time => "t".to_owned(),
+            Variable::Element(argument, place) => self.element(argument, place),
+            Variable::Chart(place) => format!("chart{}_{}", place / 4, place % 4),
+            Variable::Parameter(place) => format!("m->parameters[{}]", self.constant("parameter", place)),
+            Variable::ParameterSetup(place) => format!("m->derived[{place}]"),
+            Variable::Input(place) => format!("m->inputs[{}]", self.constant("input", place)),
+            Variable::Curve { table, order } => format!("table{table}[{order}]"),
+            Variable::Kept { array, row, column } => format!("kept{array}[{row}][{column}]"),
+            Variable::Fixed(number) => format!("fixed{number}"),
+            Variable::Factor(_) | Variable::Row { .. } | Variable::Strided { .. } => {
+                unreachable!("loops know what these are")
+            }
+        }
+    }
+
+    /// An element of an argument.
+    fn element(&self, argument: Argument, place: usize) -> String {
+        const POSITION: [&str; 7] = ["rx", "ry", "rz", "e0", "e1", "e2", "e3"];
+        const VELOCITY: [&str; 6] = ["sx", "sy", "sz", "wx", "wy", "wz"];
+        let first_velocity = 7 * self.bodies.len();
+        match argument {
+            Argument::State if place < first_velocity => {
+                format!("{}_{}", self.bodies[place / 7], POSITION[place % 7])
+            }
+            Argument::State if place < 13 * self.bodies.len() => {
+                let place = place - first_velocity;
+                format!("{}_{}", self.bodies[place / 6], VELOCITY[place % 6])
+            }
+            Argument::State => format!("turn{}", place - self.first_turn),
+            Argument::Joints if place < self.n_coordinates => format!("x{place}"),
+            Argument::Joints => format!("u{}", place - self.n_coordinates),
+            Argument::Accelerations => format!("a{place}"),
+            Argument::Rows => format!("row{place}"),
+        }
     }
 
     /// A text that is written for a mechanism called `gyro`, for this one.
@@ -54,6 +109,12 @@ impl Names {
         // The type itself has no further word.
         let text = template.replace("const gyro *", "const \u{1} *");
         let text = text.replace("GYRO_", &self.upper("")).replace("gyro_", &self.own(""));
-        text.replace('\u{1}', &self.prefix)
+        text.replace('\u{1}', self.prefix)
     }
+}
+
+/// The name of a place among those of its kind.
+pub(crate) fn within_kind(index: &Index) -> String {
+    let name = index.name.to_uppercase();
+    index.coordinate.map_or(name.clone(), |coordinate| format!("{coordinate}_{name}"))
 }

@@ -4,11 +4,13 @@
 //! hand-written text (`wasm/runtime.mjs`), which reads from a table what functions a mechanism has.
 
 use crate::fmu::states;
-use crate::functions::{Argument, Function, function};
-use crate::module::Module;
-use crate::names::Names;
-use crate::{Error, Exported, Precision, text};
+use crate::functions::{Argument, Function};
+use crate::names::within_kind;
+use crate::text::Writer;
+use crate::{Exported, Precision};
+use gyro_codegen::Scheduled;
 use gyro_model::{Model, Parameter, to_f64};
+use gyro_program::Space;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -67,21 +69,11 @@ const SOLVER: [&str; 12] = [
     "status_text",
 ];
 
-/// Writes a module for a compiler of WebAssembly. `code` is the text of the module that was generated of the model.
-///
-/// # Errors
-/// What the module has that cannot be written in C.
-pub fn wasm(model: &Model, code: &str, precision: Precision) -> Result<Wasm, Error> {
-    let module = Module::read(code)?;
-    let page = text::page(model, code);
-    let c = text::written(model, &module, (page, precision))?;
-    let names = Names::new(&model.name, precision, &module.indices);
-    let functions: Result<Vec<Function>, Error> =
-        module.functions.iter().map(|of| function(&module, &names, of)).collect();
-    let functions: Vec<Function> =
-        functions?.into_iter().filter(|function| function.name != text::SETUP).collect();
-    let has_solver = module.size("Joints") > 0;
-    let about = about(model, &module, &functions, precision).to_string();
+/// Writes a mechanism for a compiler of WebAssembly: what was generated of the model whose file has this name.
+pub fn wasm(file_name: &str, model: &Model, scheduled: &Scheduled, precision: Precision) -> Wasm {
+    let writer = Writer::new(file_name, model, scheduled, precision);
+    let (c, names, has_solver) = (writer.written(), &writer.names, writer.has_solver());
+    let about = about(model, &writer).to_string();
     let name = &model.name;
     let mut around = include_str!("../c/wasm/around.c").to_owned();
     if has_solver {
@@ -99,9 +91,9 @@ pub fn wasm(model: &Model, code: &str, precision: Precision) -> Result<Wasm, Err
     ];
     let solver = if has_solver { &SOLVER[..] } else { &[] };
     let exported = ["init", "set_parameter", "set_input"].into_iter().chain(solver.iter().copied());
-    let exported = exported.chain(functions.iter().map(|function| function.name.as_str()));
-    let head = format!("{MARK} from {}. Do not edit.\n\n", page.replace(['\n', '\r'], " "));
-    Ok(Wasm {
+    let exported = exported.chain(writer.functions().map(|function| function.name.as_str()));
+    let head = format!("{MARK} from {}. Do not edit.\n\n", writer.page);
+    Wasm {
         exports: exported.map(|function| names.own(function)).collect(),
         script: format!(
             "{head}{}\nexport const about = {about};\n\n/** The mechanism, from the module beside this file unless another \
@@ -109,24 +101,25 @@ pub fn wasm(model: &Model, code: &str, precision: Precision) -> Result<Wasm, Err
              Mechanism.of(about, source);\n}}\n",
             include_str!("../wasm/runtime.mjs")
         ),
-        declarations: head + &declarations(model, &module, &functions, precision),
+        declarations: head + &declarations(model, &writer),
         about,
         c,
         files,
         sources,
-    })
+    }
 }
 
 /// The table that the run time reads.
-fn about(model: &Model, module: &Module, functions: &[Function], precision: Precision) -> Value {
+fn about(model: &Model, writer: &Writer<'_>) -> Value {
+    let scheduled = writer.scheduled;
     let set = |parameters: &[Parameter]| -> Vec<Value> {
         let one = |of: &Parameter| json!({ "name": of.name, "value": to_f64(&of.value) });
         parameters.iter().map(one).collect()
     };
     let mut place: Map<String, Value> = Map::new();
-    for (path, at) in &module.indices {
-        let of_kind = place.entry(path[0].clone()).or_insert_with(|| json!({}));
-        of_kind[path[1..].join("_")] = json!(at);
+    for index in &scheduled.indices {
+        let of_kind = place.entry(index.kind).or_insert_with(|| json!({}));
+        of_kind[within_kind(index)] = json!(index.place);
     }
     let argument = |of: &Argument| match of.size {
         None => json!({ "name": of.name }),
@@ -137,31 +130,31 @@ fn about(model: &Model, module: &Module, functions: &[Function], precision: Prec
         let arguments: Vec<Value> = of.arguments.iter().map(argument).collect();
         json!({ "name": of.name, "arguments": arguments })
     };
-    let bodies = model.coordinate_bodies().into_iter().map(|body| model.bodies[body].name.as_str());
-    let states = states(model, module).into_iter().map(|(name, unit)| json!({ "name": name, "unit": unit }));
+    let states =
+        states(model, scheduled).into_iter().map(|(name, unit)| json!({ "name": name, "unit": unit }));
     json!({
         "name": model.name,
-        "real": match precision { Precision::F64 => "f64", Precision::F32 => "f32" },
-        "hasSolver": module.size("Joints") > 0,
+        "real": match writer.names.precision { Precision::F64 => "f64", Precision::F32 => "f32" },
+        "hasSolver": writer.has_solver(),
         "sizes": {
-            "n_bodies": model.coordinate_bodies().len(),
-            "n_state": module.size("State"),
-            "n_joints": module.size("Joints"),
-            "n_rates": module.size("Rates"),
-            "n_outputs": module.size("Outputs"),
+            "n_bodies": writer.names.bodies.len(),
+            "n_state": scheduled.len(Space::State),
+            "n_joints": scheduled.len(Space::Joints),
+            "n_rates": scheduled.len(Space::Rates),
+            "n_outputs": scheduled.len(Space::Outputs),
         },
         "parameters": set(&model.parameters),
         "inputs": set(&model.inputs),
         "states": states.collect::<Vec<_>>(),
-        "bodies": bodies.collect::<Vec<_>>(),
+        "bodies": writer.names.bodies,
         "place": place,
-        "functions": functions.iter().map(function).collect::<Vec<_>>(),
+        "functions": writer.functions().map(function).collect::<Vec<_>>(),
     })
 }
 
-fn declarations(model: &Model, module: &Module, functions: &[Function], precision: Precision) -> String {
+fn declarations(model: &Model, writer: &Writer<'_>) -> String {
     let mut lines = String::new();
-    for function in functions {
+    for function in writer.functions() {
         let (written, read): (Vec<&Argument>, Vec<&Argument>) =
             function.arguments.iter().partition(|argument| argument.is_written);
         let kind = |of: &Argument| if of.size.is_some() { "Numbers" } else { "number" };
@@ -176,11 +169,10 @@ fn declarations(model: &Model, module: &Module, functions: &[Function], precisio
         };
         let sizes: Vec<String> =
             written.iter().map(|of| format!("{}: {}", of.name, of.size.unwrap_or(1))).collect();
-        let doc = if function.doc.is_empty() { text::doc_of(&function.name) } else { &function.doc };
         let _ = write!(
             lines,
             "  /** {} Numbers: {}. */\n  {}({}): {result};\n",
-            doc.replace("*/", "* /"),
+            function.doc.replace("*/", "* /"),
             sizes.join(", "),
             camel(&function.name),
             arguments.join(", ")
@@ -190,12 +182,12 @@ fn declarations(model: &Model, module: &Module, functions: &[Function], precisio
         let names: Vec<String> = names.map(|name| format!("'{name}'")).collect();
         if names.is_empty() { "never".to_owned() } else { names.join(" | ") }
     };
-    let methods: &[&str] = if module.computes("joint_jacobian") {
+    let methods: &[&str] = if writer.has_jacobian() {
         &["rk4", "tsit5", "dop853", "rodas4"]
     } else {
         &["rk4", "tsit5", "dop853"]
     };
-    let real = match precision {
+    let real = match writer.names.precision {
         Precision::F64 => "Float64Array",
         Precision::F32 => "Float32Array",
     };

@@ -1,6 +1,6 @@
 //! What computes the kernels of a mechanism.
 
-use gyro_codegen::{Argument, Kernel, Scheduled, Variable};
+use gyro_codegen::{Argument, Kernel, Scheduled, ScheduledKernel, Variable};
 use gyro_program::Space;
 use gyro_sim::Scalar;
 use std::fmt::{self, Debug};
@@ -149,24 +149,13 @@ impl Shape {
 
 /// Whether a kernel reads curves of tables.
 pub(crate) fn reads_curves(scheduled: &Scheduled, kernel: Kernel) -> bool {
-    variables(scheduled, kernel).any(|variable| matches!(variable, Variable::Curve { .. }))
+    let mut variables = scheduled.kernels.get(&kernel).into_iter().flat_map(ScheduledKernel::variables);
+    variables.any(|variable| matches!(variable, Variable::Curve { .. }))
 }
 
 /// Whether a kernel reads accelerations or rates' rates.
 pub(crate) fn reads_given(scheduled: &Scheduled, kernel: Kernel) -> bool {
-    variables(scheduled, kernel).any(|variable| {
-        let (Variable::Element(argument, _) | Variable::Strided { argument, .. }) = variable else {
-            return false;
-        };
-        *argument == Argument::Accelerations
-    })
-}
-
-fn variables(scheduled: &Scheduled, kernel: Kernel) -> impl Iterator<Item = &Variable> {
-    scheduled.kernels.get(&kernel).into_iter().flat_map(|kernel| {
-        let bodies = kernel.tape.loops.iter().map(|each| &each.body);
-        [&kernel.tape.outside].into_iter().chain(bodies).flat_map(|tape| tape.variables())
-    })
+    scheduled.kernels.get(&kernel).is_some_and(|kernel| kernel.reads(Argument::Accelerations))
 }
 
 /// Writes the curves of all tables at a time: value and two derivatives each.

@@ -70,8 +70,8 @@ pub struct Signature {
     pub name: &'static str,
     /// What the data sheet claims that it computes.
     pub computes: &'static str,
-    /// How its documentation begins: what a call does.
-    pub does: &'static str,
+    /// What a call does, which [`Signature::does`] completes.
+    does: &'static str,
     /// The state that it is a function of, besides the time.
     pub state: State,
     /// What it needs beside the state.
@@ -197,7 +197,7 @@ const TABLE: &[Signature] = &[
         ["(δr, δπ') that changes the rows as given", "Solves eq. (17) without forces, the changes of the rows for γ"],
         Claim::Proved("rows change as asked; M δ ⊥ all that changes no row", "eq. (17)")),
     row(Kernel::Derivative, Group::Maximal, "derivative", (MAXIMAL, Given::HandedOn("accelerations", Kernel::Accelerations), Outcome::Fills("dy", Space::State)),
-        ["ẏ but for the accelerations: eqs. (14), (16)", "Writes ẏ; beyond what [`gyro_sim::Dynamics::accelerations`] takes"],
+        ["ẏ but for the accelerations: eqs. (14), (16)", "Writes ẏ"],
         Claim::Proved("eqs. (14), (16), power, rates of turn references", "eqs. (14) and (16)")),
     row(Kernel::Energy, Group::Mechanism, "energy", (MAXIMAL, NOTHING, Outcome::Energies),
         ["T and V", "Kinetic and potential energy"],
@@ -221,7 +221,7 @@ const TABLE: &[Signature] = &[
         ["u̇ in joint coordinates", "Writes u̇"],
         Claim::Proved("with B = ∂v/∂u: Bᵀ(M v̇ − f) = −Jᵀλ, Φ_π' v̇ = γ", "eq. (17) on the constraints")),
     row(Kernel::JointDerivative, Group::Joint, "joint_derivative", (JOINT, Given::HandedOn("rates", Kernel::JointAccelerations), Outcome::Fills("dx", Space::Joints)),
-        ["ẋ but for u̇", "Writes the derivative of the joint state; beyond what [`gyro_sim::JointSpace::joint_accelerations`] takes"],
+        ["ẋ but for u̇", "Writes the derivative of the joint state"],
         Claim::Proved("along it the state moves by eqs. (14), (16); power", "eqs. (14) and (16) on the constraints")),
     row(Kernel::ToMaximal, Group::Joint, "to_maximal", (JOINT, NOTHING, Outcome::Fills("y", Space::State)),
         ["(q, v) of a joint state", "Writes the maximal state of a joint state"],
@@ -236,7 +236,7 @@ const TABLE: &[Signature] = &[
         ["(s̈, ẇ') at a corrected state", "Writes (s̈, ẇ') at a state that satisfies the constraints"],
         Claim::Proved("the proved v̇ at the state of (x, u)", "eq. (17) on the constraints")),
     row(Kernel::CorrectedDerivative, Group::Corrected, "corrected_derivative", (MAXIMAL, Given::HandedOn("accelerations", Kernel::CorrectedAccelerations), Outcome::Fills("dy", Space::State)),
-        ["ẏ but for the accelerations, there", "Writes ẏ; beyond what [`gyro_sim::CorrectedDynamics::corrected_accelerations`] takes"],
+        ["ẏ but for the accelerations, there", "Writes ẏ"],
         Claim::Proved("eqs. (14), (16), v̇, turns; power at the state of (x, u)", "eqs. (14) and (16) on the constraints")),
     row(Kernel::CorrectedMultipliers, Group::Reactions, "corrected_multipliers", (MAXIMAL, Given::Told("accelerations", Space::Velocities), Outcome::Fills("lambda", Space::Rows)),
         ["λ at such a state and these accelerations", "Writes λ"],
@@ -363,6 +363,16 @@ impl Kernel {
     }
 }
 
+impl Given {
+    /// The name of the array that it stands in, if it is one of numbers.
+    pub fn array(self) -> Option<&'static str> {
+        match self {
+            Self::Nothing | Self::Charts => None,
+            Self::Told(name, _) | Self::First(name, _) | Self::HandedOn(name, _) => Some(name),
+        }
+    }
+}
+
 impl State {
     /// Name and type of the argument.
     pub fn argument(self) -> Option<(&'static str, Space)> {
@@ -375,6 +385,19 @@ impl State {
 }
 
 impl Signature {
+    /// How its documentation begins: what a call does, and which other function it calls, as a language names that.
+    pub fn does(&self, named: impl Fn(Kernel) -> String) -> String {
+        match self.given {
+            Given::HandedOn(_, first) => format!("{}; beyond what {} takes", self.does, named(first)),
+            _ => self.does.to_owned(),
+        }
+    }
+
+    /// The same in Rust's documentation.
+    pub fn does_in_rust(&self) -> String {
+        self.does(|first| format!("[`gyro_sim::{}::{}`]", first.group().trait_name(), first.name()))
+    }
+
     /// The arguments that it writes, with their types.
     pub fn written(&self) -> Vec<(&'static str, Space)> {
         match self.result {

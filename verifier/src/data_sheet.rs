@@ -259,7 +259,7 @@ fn undocumented(module: &Module) -> Vec<Refusal> {
 
 /// ` Writes ν: 3 operations (1 ±, 2 ×, 0 ÷).`
 fn documentation(name: &str, program: &Program) -> Option<String> {
-    let words = Kernel::named(name)?.signature().does;
+    let words = Kernel::named(name)?.signature().does_in_rust();
     let operations = Operations::of(program);
     let Operations { additions, multiplications, divisions, functions } = operations;
     let calls = if functions > 0 { format!(" and {functions} functions") } else { String::new() };

@@ -50,7 +50,7 @@ pub(super) fn fmu(args: &FmuArgs) -> Result<(), Failure> {
         input_units: inputs.collect(),
         outputs: outputs.collect(),
     };
-    let unit = written(&model, &module.code, &settings)
+    let unit = written(&model, &module.scheduled, &settings)
         .map_err(|e| Failure::Usage(format!("{}: no FMU can be made: {e}", args.model.display())))?;
     let library = if args.sources_only { None } else { Some(library(&unit)?) };
     let archive =

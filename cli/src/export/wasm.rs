@@ -1,6 +1,6 @@
 //! A module of WebAssembly, with an ES module around it and its declarations.
 
-use super::{Scratch, module, numbers, prove, say, unwritten};
+use super::{Scratch, module, numbers, prove, say};
 use crate::args::WasmArgs;
 use crate::contacts;
 use crate::controllers;
@@ -23,8 +23,8 @@ pub(super) fn wasm(args: &WasmArgs) -> Result<(), Failure> {
     controllers::say_left_out(&model, "the exported code");
     contacts::say_left_out(&model, "the exported code");
     paths::refuse(&model, "exported code")?;
-    let exported =
-        written(&model, &module.code, numbers(args.precision)).map_err(|e| unwritten(&args.model, &e))?;
+    let page = files::shown(&args.model);
+    let exported = written(&page, &model, &module.scheduled, numbers(args.precision));
     prove(&args.model, (&model, &module), &exported.c)?;
     let place = |ending: &str| args.out.join(format!("{}.{ending}", module.name));
     let texts = [(place("mjs"), &exported.script), (place("d.mts"), &exported.declarations)];

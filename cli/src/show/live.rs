@@ -32,8 +32,7 @@ pub(super) fn live(scene: &Scene) -> Result<Live, Failure> {
     drop(spinner);
     let module = proved(&model, module)?;
     let broken = |e: String| Failure::Run(format!("{}: {e}: please report it", scene.page_name));
-    let exported =
-        gyro_export::wasm::wasm(&model, &module.code, Precision::F64).map_err(|e| broken(e.to_string()))?;
+    let exported = gyro_export::wasm::wasm(&scene.page_name, &model, &module.scheduled, Precision::F64);
     let texts = (module.code.as_str(), module.constants.as_str());
     gyro_verifier::same_in_c(&model, texts, (&exported.c.header, &exported.c.source))
         .map_err(|e| broken(format!("the C text is not what was proved: {e}")))?;

@@ -2,7 +2,7 @@
 
 use crate::emit::literals::Literals;
 use crate::emit::names::{ident, index};
-use crate::emit::results::{Copied, Source, evenly};
+use crate::emit::results::{evenly, kept_name};
 use crate::emit::tokens::{Body, Variables, Writer};
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
@@ -14,8 +14,7 @@ use std::collections::BTreeSet;
 
 /// Writes a kernel with loops, with stand-ins for its literals.
 pub fn body(variables: &impl Variables, literals: &Literals, kernel: &Kernel<Symbol, Constant>) -> Body {
-    let outside = Outside { variables };
-    let writer = Writer::new(&kernel.outside, &outside, literals, "t");
+    let writer = Writer::new(&kernel.outside, variables, literals, "t");
     let mut parts = writer.parts(&kernel.parts(), &kernel.roots()).into_iter();
     let mut symbols = writer.symbols();
     let mut statements = arrays(&kernel.arrays);
@@ -28,7 +27,7 @@ pub fn body(variables: &impl Variables, literals: &Literals, kernel: &Kernel<Sym
         let (places, values): (Vec<_>, Vec<_>) = repeat.stores.iter().copied().unzip();
         let stored = writer.values(&values);
         let places = places.into_iter().map(|[array, row, column]| {
-            let (array, row, column) = (array_name(array), index(row), index(column));
+            let (array, row, column) = (kept_name(array), index(row), index(column));
             quote! { #array[#row][#column] }
         });
         let part = parts.next();
@@ -50,10 +49,6 @@ pub fn body(variables: &impl Variables, literals: &Literals, kernel: &Kernel<Sym
     Body { statements: quote! { #literal #bindings #statements }, values, symbols }
 }
 
-fn array_name(array: usize) -> Ident {
-    ident(&format!("kept{array}"))
-}
-
 fn table_name(number: usize) -> Ident {
     ident(&format!("PARTS_{number}"))
 }
@@ -61,33 +56,10 @@ fn table_name(number: usize) -> Ident {
 fn arrays(shapes: &[Shape]) -> TokenStream {
     let used = shapes.iter().enumerate().filter(|(_, shape)| shape.columns > 0);
     let arrays = used.map(|(array, shape)| {
-        let (name, rows, columns) = (array_name(array), index(shape.rows), index(shape.columns));
+        let (name, rows, columns) = (kept_name(array), index(shape.rows), index(shape.columns));
         quote! { let mut #name = [[T::constant(0.0); #columns]; #rows]; }
     });
     arrays.collect()
-}
-
-/// Variables outside of loops.
-struct Outside<'v, V> {
-    variables: &'v V,
-}
-
-impl<V: Variables> Variables for Outside<'_, V> {
-    fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>) {
-        let Symbol::Entry { array, row, column } = symbol else { return self.variables.variable(symbol) };
-        let (array, row, column) = (array_name(array), index(row), index(column));
-        (quote! { #array[#row][#column] }, None)
-    }
-
-    fn element(&self, symbol: Symbol) -> Option<(&'static str, usize)> {
-        self.variables.element(symbol)
-    }
-
-    fn kept(&self, symbol: Symbol) -> Option<Copied> {
-        let Symbol::Entry { array, row, column } = symbol else { return None };
-        let from = Source { array: array_name(array).to_string(), column: Some(column), is_negative: false };
-        Some(Copied { from, row })
-    }
 }
 
 /// A loop, and the variables of its body.
@@ -115,7 +87,7 @@ impl<V: Variables> Repeated<'_, V> {
         let stored: Vec<Place> = repeat.values().copied().collect();
         let temporaries: TokenStream = writer.parts(named, &stored).into_iter().collect();
         let rows = repeat.rows.iter().map(|Row { array, at, values }| {
-            let (array, values) = (array_name(*array), writer.values(values));
+            let (array, values) = (kept_name(*array), writer.values(values));
             let row = match at {
                 At::Part(offset) => row(*offset),
                 At::Only => index(0).into_token_stream(),
@@ -169,11 +141,11 @@ impl<V: Variables> Variables for Repeated<'_, V> {
                 quote! { k(#table[i][#column]) }
             }
             Local::Row { array, offset, column } => {
-                let (array, row, column) = (array_name(array), row(offset), index(column));
+                let (array, row, column) = (kept_name(array), row(offset), index(column));
                 quote! { #array[#row][#column] }
             }
             Local::Carried { array, column } => {
-                let (array, row, column) = (array_name(array), index(0), index(column));
+                let (array, row, column) = (kept_name(array), index(0), index(column));
                 quote! { #array[#row][#column] }
             }
             Local::Element { first, stride } => {

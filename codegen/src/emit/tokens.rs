@@ -2,7 +2,7 @@
 
 use crate::emit::literals::Literals;
 use crate::emit::names::ident;
-use crate::emit::results::{Copied, Source, Value};
+use crate::emit::results::Value;
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
 use crate::tape::{Exact, Kernel, Operation, Place};
@@ -29,10 +29,6 @@ pub trait Variables {
     fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>);
     /// The array that a variable is an element of, and where, if it is.
     fn element(&self, symbol: Symbol) -> Option<(&'static str, usize)>;
-    /// The entry that it is of an array that loops fill.
-    fn kept(&self, _: Symbol) -> Option<Copied> {
-        None
-    }
 }
 
 /// Statements in one block: rustc opens a scope for each `let` and recurses over them, so long functions are cut into
@@ -104,23 +100,14 @@ impl<'a, V: Variables> Writer<'a, V> {
 
     /// The same for the results of a function.
     pub fn results(&self, roots: &[Place]) -> Vec<Value> {
-        let tokens = self.values(roots).into_iter().zip(roots);
-        tokens.map(|(tokens, &root)| Value { tokens, copied: self.copied(root) }).collect()
-    }
-
-    /// What a root copies of an array that loops fill.
-    fn copied(&self, root: Place) -> Option<Copied> {
-        if self.names.contains_key(&root) {
-            return None;
-        }
-        match self.tape.operation(root) {
-            Operation::Variable(symbol) => self.variables.kept(*symbol),
-            Operation::Negate(of) => {
-                let Copied { from, row } = self.copied(*of)?;
-                Some(Copied { from: Source { is_negative: !from.is_negative, ..from }, row })
-            }
+        let has_name = |place| self.names.contains_key(&place);
+        let kept = |symbol: &Symbol| match *symbol {
+            Symbol::Entry { array, row, column } => Some([array, row, column]),
             _ => None,
-        }
+        };
+        let copied = |&root| self.tape.copied(root, has_name, kept);
+        let tokens = self.values(roots).into_iter().zip(roots);
+        tokens.map(|(tokens, root)| Value { tokens, copied: copied(root) }).collect()
     }
 
     /// What literals are made by, if there are any in what was written.

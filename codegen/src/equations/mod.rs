@@ -18,7 +18,7 @@ use crate::simplify::normal_form::vanishes;
 use crate::solve::Solution;
 use crate::solve::partition::Partition;
 use gyro_model::{Model, Spline};
-use gyro_program::{Counts, Group, Space};
+use gyro_program::{Counts, Group};
 
 /// Non-zeros with their places.
 #[derive(Debug)]
@@ -203,15 +203,6 @@ impl<'m> Equations<'m> {
     /// Length of (s̈, ẇ') of all moving bodies.
     pub fn n_velocities(&self) -> usize {
         6 * self.n_moving_bodies()
-    }
-
-    /// Number of multipliers that are found with the accelerations.
-    pub fn n_loop_multipliers(&self) -> usize {
-        self.solved.roots.len().saturating_sub(self.n_velocities())
-    }
-
-    pub fn n_state(&self) -> usize {
-        Space::State.len(&self.counts())
     }
 
     /// The argument that a variable is an element of, and where, if it is.

@@ -4,6 +4,7 @@
 //! one operation with what (`a b + c`, `a / b`) is decided here, and nowhere else.
 
 mod build;
+mod copies;
 
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
@@ -12,6 +13,9 @@ use gyro_program::elementary::Function;
 
 pub use crate::repeat::{At, Direction, Row, Shape};
 pub(crate) use build::{looped, straight};
+#[cfg(test)]
+pub(crate) use copies::LEAST_COPIES;
+pub use copies::{Arranged, Array, Copied, Run, Source, arranged};
 
 /// A number of a tape, by the place of the operation that gives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -39,8 +43,8 @@ pub enum Operation<V, C> {
 pub struct Tape<V, C> {
     /// The operations, operands first.
     pub operations: Vec<Operation<V, C>>,
-    /// Those that have a name in the text of a module, in the order of their numbers.
-    pub(crate) named: Vec<Place>,
+    /// Those that have a name in a text, in the order of their numbers.
+    pub named: Vec<Place>,
 }
 
 /// A loop: its body is done for each part.
@@ -49,7 +53,7 @@ pub struct Loop<V, C> {
     /// How many of the operations outside of loops come before it.
     pub after: usize,
     /// Those of them that have a name and come after the loop before.
-    pub(crate) named: Vec<Place>,
+    pub named: Vec<Place>,
     /// Numbers that its body reads and that are the same for all parts; numbered on from those of the loops before.
     pub fixed: Vec<Place>,
     /// Array, row and column, and what is stored there before the loop begins.
@@ -78,7 +82,7 @@ pub struct Kernel<V, C> {
     /// The loops, in their order; most kernels have none.
     pub loops: Vec<Loop<V, C>>,
     /// What has a name and comes after all loops.
-    pub(crate) rest: Vec<Place>,
+    pub rest: Vec<Place>,
     /// What the kernel gives.
     pub results: Vec<Place>,
 }
@@ -117,6 +121,14 @@ impl<V, C> Operation<V, C> {
             Self::Fused(a, b, c) => Operation::Fused(*a, *b, *c),
             Self::Call(function, operands) => Operation::Call(*function, *operands),
         }
+    }
+}
+
+impl<V, C> Default for Kernel<V, C> {
+    /// One that computes nothing.
+    fn default() -> Self {
+        let outside = Tape { operations: Vec::new(), named: Vec::new() };
+        Self { outside, arrays: Vec::new(), loops: Vec::new(), rest: Vec::new(), results: Vec::new() }
     }
 }
 

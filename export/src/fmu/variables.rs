@@ -2,8 +2,9 @@
 
 use super::{Settings, Xml};
 use crate::Error;
-use crate::module::{Module, Place};
+use gyro_codegen::{JointPlace, Scheduled};
 use gyro_model::{Model, to_f64};
+use gyro_program::Space;
 use std::io;
 
 /// A variable of the unit.
@@ -18,10 +19,14 @@ pub(super) struct Variable {
 }
 
 /// All variables, in the order of their value references: time, states, derivatives, inputs, parameters, outputs.
-pub(super) fn variables(model: &Model, module: &Module, settings: &Settings) -> Result<Vec<Variable>, Error> {
-    let states = states(model, module);
-    let n_states = module.size("Joints");
-    let starts = module.joint_start()?;
+pub(super) fn variables(
+    model: &Model,
+    scheduled: &Scheduled,
+    settings: &Settings,
+) -> Result<Vec<Variable>, Error> {
+    let states = states(model, scheduled);
+    let n_states = scheduled.len(Space::Joints);
+    let starts = scheduled.joint.as_ref().map_or(&[][..], |joint| &joint.start);
     if states.len() != n_states || starts.len() != n_states {
         return Err(Error(format!("a state of {n_states} numbers, of which {} are known", states.len())));
     }
@@ -36,7 +41,7 @@ pub(super) fn variables(model: &Model, module: &Module, settings: &Settings) -> 
         variables.push(Variable {
             unit: Some(unit.clone()),
             initial: Some("exact"),
-            start: Some(start),
+            start: Some(start + 0.0),
             ..Variable::new(name, "output", "continuous")
         });
     }
@@ -102,23 +107,17 @@ impl Variable {
 }
 
 /// Name and unit of each number of the joint state, as the table of a run names them.
-pub(crate) fn states(model: &Model, module: &Module) -> Vec<(String, String)> {
+pub(crate) fn states(model: &Model, scheduled: &Scheduled) -> Vec<(String, String)> {
     const EULER: [&str; 4] = ["e0", "e1", "e2", "e3"];
     const AXES: [&str; 3] = ["x", "y", "z"];
-    let of_place = |kind: &str, place: usize| {
-        let found = module.indices.iter().find(|(path, at)| path[0] == kind && *at == place);
-        found
-            .and_then(|(path, _)| path.last())
-            .map_or_else(|| format!("{kind}{place}"), |name| name.to_lowercase())
-    };
     let (mut coordinates, mut rates) = (Vec::new(), Vec::new());
-    for place in &module.places {
-        let at = coordinates.len();
+    let bodies = model.coordinate_bodies();
+    for place in scheduled.joint.iter().flat_map(|joint| &joint.places) {
         let parts = |to: &mut Vec<(String, String)>, name: &str, parts: &[&str], unit: &str| {
             to.extend(parts.iter().map(|part| (format!("{name} {part}"), unit.to_owned())));
         };
         match *place {
-            Place::Scalar { joint, coordinate } | Place::Turn { joint, coordinate } => {
+            JointPlace::Scalar { joint, coordinate } | JointPlace::Turn { joint, coordinate } => {
                 let kinds = model.joints[joint].kind.coordinates();
                 let kind = kinds[coordinate];
                 let name = match kinds {
@@ -126,20 +125,20 @@ pub(crate) fn states(model: &Model, module: &Module) -> Vec<(String, String)> {
                     _ => format!("{}.{}", model.joints[joint].name, kind.name()),
                 };
                 let [unit, rate] = if kind.is_angle() { ["rad", "rad/s"] } else { ["m", "m/s"] };
-                if matches!(place, Place::Scalar { .. }) {
+                if matches!(place, JointPlace::Scalar { .. }) {
                     rates.push((format!("{name} rate"), rate.to_owned()));
                 }
                 coordinates.push((name, unit.to_owned()));
             }
-            Place::Orientation => {
-                let name = of_place("joint", at);
-                parts(&mut coordinates, &name, &EULER, "1");
+            JointPlace::Orientation { joint } => {
+                let name = &model.joints[joint].name;
+                parts(&mut coordinates, name, &EULER, "1");
                 parts(&mut rates, &format!("{name} rate"), &AXES, "rad/s");
             }
-            Place::Body => {
-                let name = of_place("body", at);
-                parts(&mut coordinates, &name, &AXES, "m");
-                parts(&mut coordinates, &name, &EULER, "1");
+            JointPlace::Body { body } => {
+                let name = &model.bodies[bodies[body]].name;
+                parts(&mut coordinates, name, &AXES, "m");
+                parts(&mut coordinates, name, &EULER, "1");
                 parts(&mut rates, &format!("{name} velocity"), &AXES, "m/s");
                 parts(&mut rates, &format!("{name} angular velocity"), &["x'", "y'", "z'"], "rad/s");
             }

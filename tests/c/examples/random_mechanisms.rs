@@ -21,8 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let functions = gyro_codegen::Functions::all();
         let module = gyro_codegen::generate_functions("page.toml", &model, &functions)?;
         let precision = if seed % 2 == 0 { Precision::F64 } else { Precision::F32 };
-        let exported =
-            gyro_export::c(&model, &module.code, precision).map_err(|e| format!("seed {seed}: {e}"))?;
+        let exported = gyro_export::c("page.toml", &model, &module.scheduled, precision);
         let texts = (module.code.as_str(), module.constants.as_str());
         n_functions += gyro_verifier::same_in_c(&model, texts, (&exported.header, &exported.source))
             .map_err(|e| format!("seed {seed}: {e}"))?;

@@ -13,14 +13,14 @@ impl ModuleWriter<'_> {
     /// The type, its default and its parameters.
     pub fn definition(&self) -> TokenStream {
         let name = ident(self.type_name);
-        let doc = format!(" The mechanism `{}`.", self.equations.model.name);
-        let (parameters, inputs) = (&self.equations.model.parameters, &self.equations.model.inputs);
+        let doc = format!(" The mechanism `{}`.", self.model().name);
+        let (parameters, inputs) = (&self.model().parameters, &self.model().inputs);
         let input_names: Vec<_> = inputs.iter().map(|p| ident(&p.name)).collect();
         let input_docs =
             inputs.iter().map(|p| format!(" Input, set at every step; until then {:?}.", default(p)));
         let inputs_at_first: Vec<_> = inputs.iter().map(|p| float(default(p))).collect();
-        let n_derived = (!self.kernels.roots(Kernel::ParameterSetup).is_empty())
-            .then(|| index(self.kernels.roots(Kernel::ParameterSetup).len()));
+        let n_derived = self.scheduled.n_results(Kernel::ParameterSetup);
+        let n_derived = (n_derived > 0).then(|| index(n_derived));
         let (fields, at_first) = if parameters.is_empty() && inputs.is_empty() {
             let doc = " The model has neither parameters nor inputs.";
             (
@@ -76,7 +76,7 @@ impl ModuleWriter<'_> {
 
     /// The parameters by name; nothing if there are none.
     fn parameters(&self) -> Option<TokenStream> {
-        let parameters = &self.equations.model.parameters;
+        let parameters = &self.model().parameters;
         if parameters.is_empty() {
             return None;
         }
@@ -84,7 +84,7 @@ impl ModuleWriter<'_> {
         let names: Vec<_> = parameters.iter().map(|p| ident(&p.name)).collect();
         let values: Vec<_> = parameters.iter().map(|p| float(default(p))).collect();
         let docs = parameters.iter().map(|p| format!(" Default {:?}.", default(p)));
-        let model = &self.equations.model;
+        let model = &self.model();
         let rules: Vec<_> = model.parameter_rules().iter().map(|rule| rule_tokens(model, rule)).collect();
         let values_of_rules = if rules.is_empty() {
             quote! { _ }
@@ -126,11 +126,11 @@ impl ModuleWriter<'_> {
     }
 
     fn set_parameters(&self, at_first: &TokenStream) -> TokenStream {
-        let parameters = &self.equations.model.parameters;
+        let parameters = &self.model().parameters;
         let names: Vec<_> = parameters.iter().map(|p| ident(&p.name)).collect();
         let strings = parameters.iter().map(|p| &p.name);
         let (count, places) = (index(parameters.len()), (0..parameters.len()).map(index));
-        let parameter_setup = (!self.kernels.roots(Kernel::ParameterSetup).is_empty()).then(|| {
+        let parameter_setup = self.scheduled.kernels.contains_key(&Kernel::ParameterSetup).then(|| {
             quote! {
                 let mut derived = self.derived;
                 self.parameter_setup(&mut derived);
@@ -174,10 +174,9 @@ impl ModuleWriter<'_> {
 
     /// Nothing if nothing depends on parameters alone.
     fn parameter_setup(&self) -> Option<TokenStream> {
-        let roots = self.kernels.roots(Kernel::ParameterSetup);
-        let n = index(roots.len());
-        (!roots.is_empty()).then(|| {
-            self.function(Kernel::ParameterSetup.signature().does, roots, |body, _, _| {
+        let n = index(self.scheduled.n_results(Kernel::ParameterSetup));
+        self.scheduled.kernels.contains_key(&Kernel::ParameterSetup).then(|| {
+            self.function(Kernel::ParameterSetup, |body, _, _| {
                 let (statements, filled) = (&body.statements, filled("out", &body.values));
                 quote! {
                     fn parameter_setup(&self, out: &mut [T; #n]) {

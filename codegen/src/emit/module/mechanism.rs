@@ -1,17 +1,16 @@
 //! What solvers and observers see of the mechanism.
 
+use super::patterns::without_signs_of_zeros;
 use super::writer::ModuleWriter;
 use crate::emit::literals::float;
 use crate::emit::names::{self, ident, index};
-use crate::scheduled;
-use gyro_model::{JointKind, RowOwner, RowUnit, Start};
+use gyro_model::{JointKind, RowOwner, RowUnit};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 impl ModuleWriter<'_> {
-    pub fn start(&self, start: &Start) -> TokenStream {
-        let start = scheduled::start(self.equations.model, start).into_iter();
-        let start: Vec<_> = start.map(|x| if x == 0.0 { float(0.0) } else { float(x) }).collect();
+    pub fn start(&self) -> TokenStream {
+        let start = without_signs_of_zeros(&self.scheduled.start);
         quote! {
             fn start(&self) -> Self::State {
                 let k = T::constant;
@@ -22,7 +21,7 @@ impl ModuleWriter<'_> {
 
     /// The setter of inputs by their index.
     pub fn set_input(&self) -> TokenStream {
-        let inputs = &self.equations.model.inputs;
+        let inputs = &self.model().inputs;
         if inputs.is_empty() {
             return quote! {
                 fn set_input(&mut self, _index: usize, _value: T) -> bool {
@@ -45,13 +44,13 @@ impl ModuleWriter<'_> {
 
     /// Names, rows and sizes.
     pub fn description(&self) -> TokenStream {
-        let e = self.equations;
-        let bodies = self.moving_bodies().into_iter().map(|body| &e.model.bodies[body].name);
-        let joints = e.model.joints.iter().map(|joint| {
+        let model = self.model();
+        let bodies = self.moving_bodies().into_iter().map(|body| &model.bodies[body].name);
+        let joints = model.joints.iter().map(|joint| {
             let (name, coordinates) = (&joint.name, coordinates(joint.kind));
             quote! { gyro_sim::JointInfo { name: #name, coordinates: &[#(gyro_sim::Coordinate::#coordinates),*] } }
         });
-        let rows = e.model.rows().into_iter().map(|row| {
+        let rows = model.rows().into_iter().map(|row| {
             let is_length = row.unit == RowUnit::Length;
             let (owner, index) = match row.owner {
                 RowOwner::Body(body) => (
@@ -69,11 +68,10 @@ impl ModuleWriter<'_> {
             quote! { gyro_sim::RowInfo { owner: gyro_sim::Owner::#owner(#index), is_length: #is_length } }
         });
         let (couplers, drivers) =
-            (e.model.couplers.iter().map(|c| &c.name), e.model.drivers.iter().map(|d| &d.name));
-        let (size, has_work, references) =
-            (float(e.model.size()), e.model.has_work(), self.turn_references());
-        let inputs = e.model.inputs.iter().map(|input| &input.name);
-        let outputs = e.model.outputs.iter().flat_map(|output| {
+            (model.couplers.iter().map(|c| &c.name), model.drivers.iter().map(|d| &d.name));
+        let (size, has_work, references) = (float(model.size()), model.has_work(), self.turn_references());
+        let inputs = model.inputs.iter().map(|input| &input.name);
+        let outputs = model.outputs.iter().flat_map(|output| {
             output.kind.columns().iter().map(|(suffix, unit)| {
                 let name = &output.name;
                 quote! { gyro_sim::OutputInfo { name: #name, suffix: #suffix, unit: #unit } }
@@ -100,7 +98,7 @@ impl ModuleWriter<'_> {
 
     /// Where the angles of the turn references are among the readings.
     fn turn_references(&self) -> Vec<TokenStream> {
-        let model = self.equations.model;
+        let model = self.model();
         let len = |c: &Ident| {
             if c == "Angle" {
                 3

@@ -14,12 +14,9 @@ mod writer;
 use self::writer::ModuleWriter;
 use crate::emit::data_sheet::DataSheet;
 use crate::emit::literals::Literals;
-use crate::equations::Equations;
-use crate::kernels::Kernels;
-use gyro_model::Start;
+use crate::scheduled::{Computed, Scheduled};
 use proc_macro2::TokenStream;
 use quote::quote;
-use std::cell::RefCell;
 
 /// `gyroscope_maximal` to `GyroscopeMaximal`; what Rust or the generic parameter already means gets an underscore.
 pub fn type_name(module_name: &str) -> String {
@@ -42,29 +39,22 @@ pub struct Text {
 }
 
 /// Writes the files.
-pub fn write(
-    file_name: &str,
-    type_name: &str,
-    (equations, kernels): (&Equations, Kernels),
-    start: &Start,
-) -> Text {
+pub fn write(file_name: &str, type_name: &str, computed: &Computed, scheduled: &Scheduled) -> Text {
     let literals = Literals::default();
-    let counts = equations.counts();
-    let repetitions = RefCell::default();
-    let module = ModuleWriter { equations, counts, type_name, kernels, literals, repetitions };
-    let tokens = module.tokens(start);
-    let data_sheet = DataSheet::of(equations, &module.kernels, &module.repetitions.borrow());
+    let module = ModuleWriter { computed, type_name, literals, scheduled };
+    let tokens = module.tokens();
+    let data_sheet = DataSheet::of(computed);
     let (tokens, constants) = module.literals.write(tokens);
     let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
-    let text = tables::with_numbers(prettyplease::unparse(&file), &equations.tables);
+    let text = tables::with_numbers(prettyplease::unparse(&file), &scheduled.curves);
     let code = format!("{}\n{text}", data_sheet.head(file_name));
     Text { code, constants, data_sheet }
 }
 
 impl ModuleWriter<'_> {
-    fn tokens(&self, start: &Start) -> TokenStream {
+    fn tokens(&self) -> TokenStream {
         let (tables, definition) = (self.tables_of_motions(), self.definition());
-        let (contract, indices) = (self.contract(start), self.indices());
+        let (contract, indices) = (self.contract(), self.indices());
         quote! {
             #tables
             #definition

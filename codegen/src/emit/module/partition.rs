@@ -1,12 +1,11 @@
 //! The coordinate partition.
 
 use super::writer::ModuleWriter;
-use crate::emit::names::{ident, index};
+use crate::emit::names::{ident, if_read, index};
 use crate::emit::results::stored;
 use crate::equations::PartitionForm;
-use crate::expr::symbol::Symbol;
-use crate::scheduled;
-use gyro_program::Kernel;
+use crate::scheduled::Variable;
+use gyro_program::{Kernel, Space};
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -14,9 +13,9 @@ impl ModuleWriter<'_> {
     /// In the way that suits the mechanism.
     pub fn partition(&self) -> TokenStream {
         // Trees have no singular poses.
-        let joint_space = self.equations.joint_space.as_ref();
-        let has_poses = joint_space.is_none_or(|space| !space.closure_rows.is_empty());
-        match self.equations.partition_form() {
+        let joint = self.scheduled.joint.as_ref();
+        let has_poses = joint.is_none_or(|joint| !joint.closure_rows.is_empty());
+        match self.scheduled.partition {
             PartitionForm::Charts => self.by_charts(),
             PartitionForm::Joints => self.by_joints(has_poses),
             PartitionForm::Pivoting => self.by_pivoting(has_poses),
@@ -27,7 +26,7 @@ impl ModuleWriter<'_> {
     fn by_pivoting(&self, has_poses: bool) -> TokenStream {
         let name = ident(self.type_name);
         let [n_constraints, n_positions] =
-            [self.equations.phi.len(), 7 * self.equations.n_moving_bodies()].map(index);
+            [Space::Constraints.len(self.counts()), 7 * self.counts().bodies].map(index);
         let clearance = has_poses.then(|| {
             quote! {
                 fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
@@ -105,22 +104,18 @@ impl ModuleWriter<'_> {
     /// The unrolled solves with their charts.
     fn by_charts(&self) -> TokenStream {
         let name = ident(self.type_name);
-        let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
-        let n_state = index(self.equations.n_state());
-        let vectors = self.function(
-            Kernel::ChartVectors.signature().does,
-            self.kernels.roots(Kernel::ChartVectors),
-            |body, _, y| {
-                let statements = &body.statements;
-                let vectors = body.values.chunks(4).map(|vector| quote! { [#(#vector),*] });
-                quote! {
-                    fn chart_vectors(&self, #y: &[T; #n_state]) -> [[T; 4]; #n_charts] {
-                        #statements
-                        [#(#vectors),*]
-                    }
+        let n_charts = index(self.scheduled.n_results(Kernel::ChartVectors) / 4);
+        let n_state = index(Space::State.len(self.counts()));
+        let vectors = self.function(Kernel::ChartVectors, |body, _, y| {
+            let statements = &body.statements;
+            let vectors = body.values.chunks(4).map(|vector| quote! { [#(#vector),*] });
+            quote! {
+                fn chart_vectors(&self, #y: &[T; #n_state]) -> [[T; 4]; #n_charts] {
+                    #statements
+                    [#(#vectors),*]
                 }
-            },
-        );
+            }
+        });
         let newton = self.solve("newton_step_on", Kernel::NewtonStep);
         let velocities = self.solve("solve_velocities_on", Kernel::SolveVelocities);
         quote! {
@@ -159,14 +154,13 @@ impl ModuleWriter<'_> {
     /// A solve of the partition, which overwrites part of the state; what keeps its value is not stored again.
     fn solve(&self, name: &str, kernel: Kernel) -> TokenStream {
         let name = ident(name);
-        let (places, roots) = scheduled::stores(self.equations, kernel, self.kernels.roots(kernel));
+        let places = self.computed.exact.get(&kernel).map_or(&[][..], |exact| &exact.places);
         let y = ident(if places.is_empty() { "_y" } else { "y" });
-        let n_charts = index(self.kernels.roots(Kernel::ChartVectors).len() / 4);
-        let n_state = index(self.equations.n_state());
-        self.function(kernel.signature().does, &roots, |body, t, _| {
-            let (statements, stored) = (&body.statements, stored("y", &places, &body.values));
-            let charted = body.symbols.iter().any(|s| matches!(s, Symbol::Chart { .. }));
-            let charts = ident(if charted { "charts" } else { "_charts" });
+        let n_charts = index(self.scheduled.n_results(Kernel::ChartVectors) / 4);
+        let n_state = index(Space::State.len(self.counts()));
+        self.function(kernel, |body, t, _| {
+            let (statements, stored) = (&body.statements, stored("y", places, &body.values));
+            let charts = if_read("charts", self.reads(kernel, |read| matches!(read, Variable::Chart(_))));
             quote! {
                 fn #name(&self, #t: T, #charts: &[[T; 4]; #n_charts], #y: &mut [T; #n_state]) {
                     #statements

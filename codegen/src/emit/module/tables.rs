@@ -14,7 +14,7 @@ pub fn pieces_name(table: usize) -> String {
 }
 
 /// Fills the arrays of a module's text, which are empty, laid out as the rest of it is.
-pub fn with_numbers(text: String, tables: &[&Spline]) -> String {
+pub fn with_numbers(text: String, tables: &[Spline]) -> String {
     if tables.is_empty() {
         return text;
     }
@@ -78,7 +78,7 @@ mod tests {
                 format!("//!\n{}", prettyplease::unparse(&syn::parse2(tokens).expect("constants")))
             };
             let expected = text(quote! { #(#times),* }, quote! { #(#pieces),* });
-            assert_eq!(with_numbers(text(quote! {}, quote! {}), &[&spline]), expected);
+            assert_eq!(with_numbers(text(quote! {}, quote! {}), std::slice::from_ref(&spline)), expected);
         }
     }
 }

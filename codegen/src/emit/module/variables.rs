@@ -2,6 +2,7 @@
 
 use super::writer::ModuleWriter;
 use crate::emit::names::{ident, index};
+use crate::emit::results::kept_name;
 use crate::emit::tokens::Variables;
 use crate::equations::Argument;
 use crate::expr::symbol::Symbol;
@@ -12,7 +13,7 @@ use quote::quote;
 impl Variables for ModuleWriter<'_> {
     fn variable(&self, symbol: Symbol) -> (TokenStream, Option<TokenStream>) {
         const AXES: [&str; 3] = ["x", "y", "z"];
-        let body = |moving_body: usize| &self.equations.model.bodies[self.moving_bodies()[moving_body]].name;
+        let body = |moving_body: usize| &self.model().bodies[self.moving_bodies()[moving_body]].name;
         let bound = |name: String| {
             let (buffer, at) = self.element(symbol).expect("it is an element of an argument");
             let (name, buffer, at) = (ident(&name), ident(buffer), index(at));
@@ -29,7 +30,7 @@ impl Variables for ModuleWriter<'_> {
                 (quote! { #name }, Some(quote! { charts[#chart][#k] }))
             }
             Symbol::Parameter(parameter) => {
-                let name = ident(&self.equations.model.parameters[parameter].name);
+                let name = ident(&self.model().parameters[parameter].name);
                 (quote! { self.parameters.#name }, None)
             }
             Symbol::ParameterSetup(place) => {
@@ -37,7 +38,7 @@ impl Variables for ModuleWriter<'_> {
                 (quote! { self.derived[#place] }, None)
             }
             Symbol::Input(input) => {
-                let name = ident(&self.equations.model.inputs[input].name);
+                let name = ident(&self.model().inputs[input].name);
                 (quote! { self.#name }, None)
             }
             Symbol::Turn(turn) => bound(format!("turn{turn}")),
@@ -54,7 +55,11 @@ impl Variables for ModuleWriter<'_> {
             Symbol::Change(row) => bound(format!("row{row}")),
             Symbol::Coordinate(place) => bound(format!("x{place}")),
             Symbol::Rate(place) => bound(format!("u{place}")),
-            Symbol::Entry { .. } | Symbol::Local(_) => unreachable!("loops know what these are"),
+            Symbol::Entry { array, row, column } => {
+                let (array, row, column) = (kept_name(array), index(row), index(column));
+                (quote! { #array[#row][#column] }, None)
+            }
+            Symbol::Local(_) => unreachable!("loops know what these are"),
             Symbol::Sine(_)
             | Symbol::Cosine(_)
             | Symbol::Unit(_)
@@ -75,6 +80,6 @@ impl Variables for ModuleWriter<'_> {
             Argument::Accelerations => "accelerations",
             Argument::Rows => "rows",
         };
-        self.equations.element(symbol).map(|(argument, place)| (name(argument), place))
+        self.computed.equations.element(symbol).map(|(argument, place)| (name(argument), place))
     }
 }

@@ -4,20 +4,17 @@ use super::tables;
 use crate::emit::data_sheet::printable;
 use crate::emit::literals::Literals;
 use crate::emit::loops;
-use crate::emit::names::{ident, index};
+use crate::emit::names::{ident, if_read, index};
 use crate::emit::tokens::{self, Body};
-use crate::equations::Equations;
-use crate::expr::graph::ExprId;
-use crate::expr::schedule::Operations;
+use crate::equations::Argument;
+use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
-use crate::kernels::Kernels;
-use crate::repeat::Repetition;
-use crate::scheduled;
-use gyro_program::Counts;
+use crate::scheduled::{Computed, ExactKernel, Scheduled, Variable};
+use crate::tape;
+use gyro_model::Model;
+use gyro_program::{Counts, Kernel};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
-use rustc_hash::FxHashMap as HashMap;
-use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 fn table_of(symbol: &Symbol) -> Option<usize> {
@@ -36,44 +33,42 @@ fn evaluated_table(table: usize) -> TokenStream {
 
 /// What the parts of a module are written from.
 pub struct ModuleWriter<'a> {
-    pub equations: &'a Equations<'a>,
-    pub counts: Counts,
+    pub computed: &'a Computed<'a>,
     pub type_name: &'a str,
-    pub kernels: Kernels,
     /// Exact constants of all functions.
     pub literals: Literals,
-    /// How kernels with loops are written, by what they compute.
-    pub repetitions: RefCell<HashMap<Vec<ExprId>, Repetition>>,
+    /// The mechanism as data.
+    pub scheduled: &'a Scheduled,
 }
 
 impl ModuleWriter<'_> {
-    pub fn moving_bodies(&self) -> Vec<usize> {
-        self.equations.model.coordinate_bodies()
+    pub fn model(&self) -> &Model {
+        self.computed.equations.model
     }
 
-    pub fn body(&self, roots: &[ExprId]) -> Body {
-        let (kernel, repetition) = scheduled::tape(self.equations, roots);
+    pub fn moving_bodies(&self) -> Vec<usize> {
+        self.model().coordinate_bodies()
+    }
+
+    pub fn counts(&self) -> &Counts {
+        &self.scheduled.counts
+    }
+
+    fn body(&self, kernel: &tape::Kernel<Symbol, Constant>) -> Body {
         let mut body = if kernel.loops.is_empty() {
-            tokens::body(self, &self.literals, &kernel)
+            tokens::body(self, &self.literals, kernel)
         } else {
-            loops::body(self, &self.literals, &kernel)
+            loops::body(self, &self.literals, kernel)
         };
-        if let Some(repetition) = repetition {
-            self.repetitions.borrow_mut().insert(roots.to_vec(), repetition);
-        }
         let tables: BTreeSet<_> = body.symbols.iter().filter_map(table_of).collect();
         let (statements, tables) = (&body.statements, tables.into_iter().map(evaluated_table));
         body.statements = quote! { #(#tables)* #statements };
         body
     }
 
-    pub fn operations(&self, roots: &[ExprId]) -> Operations {
-        Operations::count(&self.equations.graph, roots)
-    }
-
     /// Knots and pieces of each table, without their numbers.
     pub fn tables_of_motions(&self) -> TokenStream {
-        let tables = self.equations.tables.iter().enumerate().map(|(table, spline)| {
+        let tables = self.scheduled.curves.iter().enumerate().map(|(table, spline)| {
             let (knots, pieces) = table_names(table);
             let (n_knots, n_pieces) = (index(spline.knots.len()), index(spline.pieces.len()));
             let doc = format!(" Times of the points of `{}`, s.", printable(&spline.source));
@@ -90,37 +85,33 @@ impl ModuleWriter<'_> {
     /// A function with its operation counts; arguments that it does not read get a leading underscore.
     pub fn function(
         &self,
-        what: &str,
-        roots: &[ExprId],
+        kernel: Kernel,
         write: impl Fn(&Body, &TokenStream, &Ident) -> TokenStream,
     ) -> TokenStream {
-        let body = self.body(roots);
-        let reads_state = body.symbols.iter().any(|symbol| {
-            matches!(
-                symbol,
-                Symbol::Position { .. }
-                    | Symbol::Euler { .. }
-                    | Symbol::Velocity { .. }
-                    | Symbol::Spin { .. }
-                    | Symbol::Turn(_)
-            )
-        });
-        let t = if body.symbols.iter().any(|s| matches!(s, Symbol::Time | Symbol::Table { .. })) {
-            quote! { t }
-        } else {
-            quote! { _t }
-        };
-        let reads_joints =
-            body.symbols.iter().any(|symbol| matches!(symbol, Symbol::Coordinate(_) | Symbol::Rate(_)));
-        let y = ident(match (reads_state, reads_joints) {
+        let nothing = ExactKernel::default();
+        let exact = self.computed.exact.get(&kernel).unwrap_or(&nothing);
+        let body = self.body(&exact.tape);
+        let of_time = |read: &Variable| matches!(read, Variable::Time | Variable::Curve { .. });
+        let t = if_read("t", self.reads(kernel, of_time));
+        let reads = |argument| self.reads_argument(kernel, &[argument]);
+        let y = ident(match (reads(Argument::State), reads(Argument::Joints)) {
             (true, _) => "y",
             (false, true) => "x",
             (false, false) => "_y",
         });
-        let repetition = self.repetitions.borrow().get(roots).copied();
-        let operations = repetition.map_or_else(|| self.operations(roots), |written| written.operations);
-        let doc = format!(" {what}: {operations}.");
-        let function = write(&body, &t, &y);
+        let doc = format!(" {}: {}.", kernel.signature().does_in_rust(), exact.operations);
+        let function = write(&body, &quote! { #t }, &y);
         quote! { #[doc = #doc] #function }
+    }
+
+    /// Whether a kernel reads such a variable.
+    pub fn reads(&self, kernel: Kernel, is_such: impl Fn(&Variable) -> bool) -> bool {
+        self.scheduled.kernels.get(&kernel).is_some_and(|kernel| kernel.variables().any(is_such))
+    }
+
+    /// Whether a kernel reads one of these arguments.
+    pub fn reads_argument(&self, kernel: Kernel, arguments: &[Argument]) -> bool {
+        let kernel = self.scheduled.kernels.get(&kernel);
+        kernel.is_some_and(|kernel| arguments.iter().any(|&argument| kernel.reads(argument)))
     }
 }

@@ -60,7 +60,7 @@ pub(crate) fn written(
     target: &str,
 ) -> (PathBuf, [String; 2]) {
     let (model, module) = model_and_module(page, None);
-    let exported = gyro_export::c(&model, &module.code, precision).expect("C");
+    let exported = gyro_export::c(page, &model, &module.scheduled, precision);
     let folder = folder(&model.name, main, precision, target);
     let [header, source, around] =
         [format!("{}.h", model.name), format!("{}.c", model.name), format!("{main}.c")];

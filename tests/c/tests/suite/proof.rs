@@ -1,6 +1,7 @@
 //! The C text is read back and found to be what was proved, and a changed one is not.
 
-use gyro_codegen::Functions;
+use gyro_codegen::tape::Operation;
+use gyro_codegen::{Functions, Scheduled};
 use gyro_export::{Exported, Precision};
 use gyro_model::Model;
 use gyro_program::elementary::Function;
@@ -22,7 +23,7 @@ impl Case {
             |table: &str| fs::read_to_string(path.with_file_name(table)).map_err(|e| e.to_string());
         let model = gyro_model::read_with(page, &text, &mut load).expect("no mistakes");
         let module = gyro_codegen::generate_functions(page, &model, functions).expect("a module");
-        let exported = gyro_export::c(&model, &module.code, precision).expect("C");
+        let exported = gyro_export::c(page, &model, &module.scheduled, precision);
         Self { model, module, exported }
     }
 
@@ -50,6 +51,17 @@ fn the_text_is_what_was_proved() {
     }
 }
 
+/// The kernels with this function in the place of the hyperbolic tangent.
+fn replaced(scheduled: &Scheduled, function: Function) -> Scheduled {
+    let mut scheduled = scheduled.clone();
+    for operation in scheduled.kernels.values_mut().flat_map(|kernel| &mut kernel.tape.outside.operations) {
+        if let Operation::Call(called @ Function::Tanh, _) = operation {
+            *called = function;
+        }
+    }
+    scheduled
+}
+
 /// In the place of the hyperbolic tangent, whether model files reach the function or not.
 #[test]
 fn every_function_of_one_operand_is_read_back() {
@@ -60,7 +72,8 @@ fn every_function_of_one_operand_is_read_back() {
     {
         if function.arity() == 1 {
             case.module.code = code.replace(".tanh()", &format!(".{}()", function.name()));
-            case.exported = gyro_export::c(&case.model, &case.module.code, precision).expect("C");
+            let scheduled = replaced(&case.module.scheduled, function);
+            case.exported = gyro_export::c("friction.toml", &case.model, &scheduled, precision);
             let name = function.properties().in_c[precision as usize];
             assert!(
                 case.exported.source.matches(&format!("{name}(")).count() > 1,

@@ -95,7 +95,7 @@ fn in_webassembly(page: &str, precision: Precision) -> Program {
 /// The ES module of a mechanism, beside its module, in a folder for a program.
 pub(crate) fn es_module(page: &str, precision: Precision, program: &str) -> PathBuf {
     let (model, module) = model_and_module(page, None);
-    let exported = wasm(&model, &module.code, precision).expect("a module");
+    let exported = wasm(page, &model, &module.scheduled, precision);
     let folder = folder(&model.name, program, precision, "wasm");
     let script = (format!("{}.mjs", model.name), exported.script);
     for (file, text) in exported.files.iter().chain([&script]) {

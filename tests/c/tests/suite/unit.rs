@@ -25,7 +25,7 @@ fn unit(page: &str) -> Fmu {
         input_units: vec!["N*m".to_owned(); model.inputs.len()],
         outputs: (0..n_outputs).map(|n| (format!("output {n}"), "m/s^2".to_owned())).collect(),
     };
-    fmu(&model, &module.code, &settings).expect("a unit")
+    fmu(&model, &module.scheduled, &settings).expect("a unit")
 }
 
 fn attribute<'a>(node: Node<'a, '_>, name: &str) -> &'a str {
