@@ -2,8 +2,8 @@
 //!
 //! What the generator gives as data ([`gyro_codegen::Scheduled`]) is printed, operation for operation: nothing is
 //! derived, scheduled or rounded here, and `gyro_verifier` reads the C text back to see that it is what was proved of
-//! the Rust text. The run time around the kernels is C of its own (the folder `c`), with the same operations in the same
-//! order as `gyro-sim`, so that both compute the same bits.
+//! the Rust text. The run time around the kernels is C of its own (the folder `c`), with the same operations in the
+//! same order as `gyro-sim`, so that both compute the same bits.
 #![deny(missing_docs)]
 
 mod expressions;

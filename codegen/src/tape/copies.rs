@@ -1,5 +1,5 @@
-//! Numbers that a function hands over as they are, from arrays that were filled before: loops copy those that are evenly
-//! apart on both sides.
+//! Numbers that a function hands over as they are, from arrays that were filled before: loops copy those that are
+//! evenly apart on both sides.
 
 use super::{Operation, Place, Tape};
 use rustc_hash::FxHashMap as HashMap;
