@@ -1,7 +1,7 @@
 //! A generated scene links into a program without std and without an allocator, and does what it does elsewhere.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use gyro_sim::generated::gyroscope::Gyroscope;
+use gyro_mechanisms::gyroscope::Gyroscope;
 use gyro_sim::{JointCoordinate, Mechanism, Partitioned, Turns};
 use gyro_sim_suite::{cargo, say};
 use std::path::{Path, PathBuf};

@@ -11,8 +11,9 @@ use gyro_runner::{
     Advice, Approach, Coordinates, Correction, Failure, Grade, Integrator, Judgement, Measure, Offers, Plan,
     Promise, Remark, Sample, Settings, Start, Summary, When, balance, companions, judge,
 };
+use gyro_jit::Native;
 use gyro_sim::Real;
-use gyro_sim_suite::{EXTREME, Engine, Random, duals, extreme, model, moved, start_of};
+use gyro_sim_suite::{EXTREME, Engine, Random, duals, generated_in, model, moved, start_of};
 use std::collections::{BTreeMap, HashMap};
 
 /// Samples of a run.
@@ -73,14 +74,14 @@ type Outcome = (Vec<Sample>, Result<Summary, Failure>);
 
 impl Stand {
     fn new(page: &str, form: Form) -> Self {
-        fn with_kit<T: Real + Number + 'static>(
+        fn with_kit<T: Native + Real + Number + 'static>(
             page: &str,
             form: Form,
         ) -> (Engine<T>, Box<dyn MotionBuilder<Engine<T>>>) {
             let model = model(page);
             match (form, Careful::<T>::new(&model)) {
                 (Form::Generated, _) => {
-                    let engine = extreme::<T>(page);
+                    let engine = generated_in::<T>(page);
                     let builder = engine.builder(duals(page));
                     (engine, builder)
                 }
