@@ -34,6 +34,7 @@ fn alpha_here() -> f64 {
 
 /// One test, as both halves write the package's lock file.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn the_probe_links_without_an_allocator_and_fails_with_an_allocation() {
     let built = cargo(&probe(), &target(), "build", &["--release"]);
     assert!(built.is_success, "{}", built.stderr);

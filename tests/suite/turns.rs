@@ -172,6 +172,7 @@ fn compare<T: Native + Real>(train: &Train, turns: f64, approaches: &[Approach],
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn ten_thousand_turns_make_no_difference() {
     for train in &TRAINS {
         compare::<f64>(train, DURING, &approaches(train.speed), TURNED);

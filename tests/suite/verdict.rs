@@ -417,12 +417,14 @@ fn check(form: Form, n_runs: usize) -> Tally {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn no_wrong_run_is_good_and_advice_does_what_it_says() {
     let tally = check(Form::Generated, RUNS);
     assert!(tally.grades.len() == 3 && tally.followed > RUNS / 10, "{:?}", tally.grades);
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn no_wrong_run_of_a_twin_is_good() {
     check(Form::Twin, RUNS_OF_TWINS);
 }
