@@ -4,14 +4,14 @@
 
 use crate::poses::{HEAD, hinge, read, rod, rough};
 use gyro_assembled::Dense;
+use gyro_jit::Native;
 use gyro_model::Model;
 use gyro_runner::motion::{MotionBuilder, Projecting};
 use gyro_runner::{
     Approach, BodySample, Correction, Failure, Integrator, Sample, Settings, Summary, When, balance,
 };
-use gyro_jit::Native;
 use gyro_sim::Real;
-use gyro_sim_suite::{Engine, Random, duals, generated_in, generated, model, moved, played, start_of};
+use gyro_sim_suite::{Engine, Random, duals, generated, generated_in, model, moved, played, start_of};
 use std::f64::consts::{PI, TAU};
 
 /// Runs of the seeded sample; `GYRO_BRANCHES` asks for another number.
@@ -314,7 +314,9 @@ impl Case {
         if self.is_single { self.run_in::<f32>() } else { self.run_in::<f64>() }
     }
 
-    fn run_in<T: Native + Real + gyro_assembled::Number + 'static>(&self) -> (Vec<Sample>, Result<Summary, Failure>) {
+    fn run_in<T: Native + Real + gyro_assembled::Number + 'static>(
+        &self,
+    ) -> (Vec<Sample>, Result<Summary, Failure>) {
         let by = (&self.settings, &self.approach);
         if let Linkage::InLine = self.linkage {
             let page = "four-bar-in-line";

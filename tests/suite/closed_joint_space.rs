@@ -235,7 +235,9 @@ fn closed_states_accelerate_as_the_dense_model_says() {
     let (left, right) = CHECKED.split_at(CHECKED.len() / 2);
     std::thread::scope(|scope| {
         for half in [left, right] {
-            scope.spawn(|| half.iter().for_each(|page| check(page, &compiled(page), &interpreted::<Seeded>(page))));
+            scope.spawn(|| {
+                half.iter().for_each(|page| check(page, &compiled(page), &interpreted::<Seeded>(page)))
+            });
         }
     });
 }

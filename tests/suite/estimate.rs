@@ -1,14 +1,14 @@
 //! What `simulate --verify` says of a run's error is held against the error.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
+use gyro_jit::Native;
 use gyro_reference::{JointRow, scene};
 use gyro_runner::{
     Approach, Coordinates, Difference, Integrator, JointSample, Sample, Settings, companions, differences,
 };
-use gyro_jit::Native;
 use gyro_sim::Real;
 use gyro_sim_suite::{
-    Duals, EXTREME, Engine, duals, generated_in, fixture_folders, generated, model, moved, rotation, start_of,
+    Duals, EXTREME, Engine, duals, fixture_folders, generated, generated_in, model, moved, rotation, start_of,
 };
 use std::collections::HashMap;
 

@@ -9,7 +9,9 @@ use gyro_sim::{
     CorrectedDynamics, Direct, Dynamics, Error, Exact, Joint, JointCoordinate, JointSpace, Mechanism,
     Partition, Partitioned, Rk4, Turns,
 };
-use gyro_sim_suite::{Engine, Random, Run, compiled, coordinate, fed, generated, model, simulate, violated_start};
+use gyro_sim_suite::{
+    Engine, Random, Run, compiled, coordinate, fed, generated, model, simulate, violated_start,
+};
 
 /// Steps between corrections, as in the paper.
 const STEPS_PER_CORRECTION: u32 = 5;

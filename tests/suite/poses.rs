@@ -8,7 +8,8 @@ use gyro_runner::motion::{MotionBuilder, Projecting, WithDuals};
 use gyro_runner::{Approach, Coordinates, Correction, Failure, Grade, Integrator, Sample, Settings, Summary};
 use gyro_sim::{CloseLoops, JointSpace, Mechanism};
 use gyro_sim_suite::{
-    Duals, Engine, compiled, coordinate, dense, duals, generated, generated_with_joints, judged, model, moved, start_of, worst,
+    Duals, Engine, compiled, coordinate, dense, duals, generated, generated_with_joints, judged, model,
+    moved, start_of, worst,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;

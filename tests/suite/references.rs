@@ -5,7 +5,10 @@
 use gyro_model::Model;
 use gyro_reference::{JointRow, SceneReference, scene};
 use gyro_runner::{Approach, Coordinates, JointSample, Sample, Settings};
-use gyro_sim_suite::{Duals, Engine, fixture_folders, generated, generated_with_joints, model, moved, rotation, simulate, start_of};
+use gyro_sim_suite::{
+    Duals, Engine, fixture_folders, generated, generated_with_joints, model, moved, rotation, simulate,
+    start_of,
+};
 
 /// Steps of the model file's own length.
 const STEPS: f64 = 20.0;

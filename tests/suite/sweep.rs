@@ -4,17 +4,15 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use crate::estimate::{Deviation, deviations, estimate, expected};
+use gyro_jit::Native;
 use gyro_reference::JointRow;
 use gyro_runner::motion::{Linear, Motion, MotionBuilder, OperatingPoint};
 use gyro_runner::{
     Approach, Coordinates, Correction, Difference, Failure, Integrator, Offers, Sample, Settings, Start,
     Summary, differences, time_by,
 };
-use gyro_jit::Native;
 use gyro_sim::{JointLayout, Real};
-use gyro_sim_suite::{
-    Duals, Engine, duals, generated_in, generated_with_joints, model, moved, start_of,
-};
+use gyro_sim_suite::{Duals, Engine, duals, generated_in, generated_with_joints, model, moved, start_of};
 use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
 

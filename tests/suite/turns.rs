@@ -91,7 +91,10 @@ impl Train {
         let (mut mechanism, mut in_duals) = (compiled::<T>(self.page), interpreted(self.page));
         if self.page == "driven-shaft" {
             let from = self.angle(turns);
-            assert!(mechanism.set_parameter(0, T::constant(from)) && in_duals.set_parameter(0, Scalar::constant(from)));
+            assert!(
+                mechanism.set_parameter(0, T::constant(from))
+                    && in_duals.set_parameter(0, Scalar::constant(from))
+            );
         }
         (Engine::new(mechanism), Duals::new(in_duals))
     }

@@ -5,13 +5,13 @@
 
 use crate::estimate::{deviations, expected};
 use gyro_assembled::{Careful, Dense, Number};
+use gyro_jit::Native;
 use gyro_reference::JointRow;
 use gyro_runner::motion::{MotionBuilder, Projecting};
 use gyro_runner::{
     Advice, Approach, Coordinates, Correction, Failure, Grade, Integrator, Judgement, Measure, Offers, Plan,
     Promise, Remark, Sample, Settings, Start, Summary, When, balance, companions, judge,
 };
-use gyro_jit::Native;
 use gyro_sim::Real;
 use gyro_sim_suite::{EXTREME, Engine, Random, duals, generated_in, model, moved, start_of};
 use std::collections::{BTreeMap, HashMap};

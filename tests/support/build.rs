@@ -5,5 +5,7 @@ use std::error::Error;
 use std::path::Path;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    gyro_build::generate(&["all-joints", "spherical"].map(|page| Path::new("tests/models").join(page).with_extension("toml")))
+    gyro_build::generate(
+        &["all-joints", "spherical"].map(|page| Path::new("tests/models").join(page).with_extension("toml")),
+    )
 }

@@ -33,7 +33,8 @@ static COMPILED: LazyLock<Mutex<HashMap<String, Arc<Mutex<Option<Compiled<f64>>>
 /// # Panics
 /// If there is no such model file, or this machine is none for which code can be compiled.
 pub fn compiled<T: Native + Real>(page: &str) -> Compiled<T> {
-    let all = COMPILED.lock().unwrap_or_else(PoisonError::into_inner).entry(page.to_owned()).or_default().clone();
+    let all =
+        COMPILED.lock().unwrap_or_else(PoisonError::into_inner).entry(page.to_owned()).or_default().clone();
     let mut known = all.lock().unwrap_or_else(PoisonError::into_inner);
     let double = known.get_or_insert_with(|| {
         let model = model(page);
