@@ -1,8 +1,8 @@
 //! The mechanisms of `models/`, ready to run: a module for each model file, behind a feature of the file's name.
 //!
 //! `gyroscope-maximal` and `heavy-top` are kept in the repository (`mechanisms/src/golden`), the paper's scene is part
-//! of `gyro-sim`, too; all others are generated while this crate is built. `mechanisms/sheets` has the data sheet of each:
-//! what is left out of it, what every function costs, and what is proved.
+//! of `gyro-sim`, too; all others are generated while this crate is built. `mechanisms/sheets` has the data sheet of
+//! each: what is left out of it, what every function costs, and what is proved.
 #![no_std]
 #![allow(
     clippy::all,

@@ -1,6 +1,6 @@
-//! The model files of models, those that are shipped and those for tests alone, with their generated mechanisms: derived
-//! and compiled in this process, each when it is first asked for. Their functions have the bits that rustc gives those
-//! of modules (`jit/tests`).
+//! The model files of models, those that are shipped and those for tests alone, with their generated mechanisms:
+//! derived and compiled in this process, each when it is first asked for. Their functions have the bits that rustc
+//! gives those of modules (`jit/tests`).
 
 use crate::{Duals, Engine};
 use gyro_assembled::{Careful, Dense};

@@ -24,7 +24,8 @@ macro_rules! shipped {
     };
 }
 
-/// The example `beside_rustc` compares all mechanisms. Trees with and without parameters, couplers, motions that are prescribed, turn references and charts; loops.
+/// Trees with and without parameters, couplers, motions that are prescribed, turn references and charts; loops. All
+/// mechanisms are compared by the example `beside_rustc`.
 #[test]
 fn functions_have_the_bits_that_rustc_gives_them() {
     shipped![
