@@ -10,6 +10,8 @@ use std::process::ExitCode;
 
 /// Answers requests about a model on standard input and output, in the form and the precision of these names:
 /// `recursive`, `careful` or `dense`; `f32` or `f64`. See [`gyro_runner::child`].
+// Inlined, it is compiled where it is called: most programs never call it.
+#[inline]
 pub fn main(model: &Model, form: &str, precision: &str) -> ExitCode {
     child::answer_all(|request, output| match (form, precision) {
         ("careful", "f32") => answer(Careful::<f32>::new(model), request, output),

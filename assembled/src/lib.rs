@@ -50,7 +50,6 @@
 
 mod assembled;
 mod careful;
-#[cfg(feature = "child")]
 pub mod child;
 mod dense;
 mod description;

@@ -2,7 +2,7 @@
 
 use crate::Kernel;
 use crate::kernels::{CORRECTIONS, STEPS_PER_CORRECTION};
-use gyro_sim::generated::gyroscope::Gyroscope;
+use gyro_mechanisms::gyroscope::Gyroscope;
 use gyro_sim::lanes::{self, Lanes, f32x8, f64x4, f64x8};
 use gyro_sim::{
     CorrectedDynamics, Dynamics, Joint, JointSpace, Mechanism, Partition, Partitioned, Real, Rk4, Scalar,

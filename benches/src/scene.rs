@@ -1,8 +1,8 @@
 //! The paper's scene as everyone who computes it sees it.
 
 use gyro_assembled::{Careful, Dense, Recursive};
+use gyro_mechanisms::gyroscope::Gyroscope;
 use gyro_mechanisms::gyroscope_maximal::GyroscopeMaximal;
-use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::{Dynamics, Kinematics, Projection, Rk4};
 use gyro_yardstick::{Floor, STEP};
 

@@ -38,9 +38,7 @@
 //!   holds the buffers of its own method and correction alone.
 //!
 //! ```
-//! # #[cfg(feature = "generated")]
-//! # fn main() -> Result<(), gyro_sim::Error> {
-//! use gyro_sim::generated::gyroscope::Gyroscope;
+//! use gyro_mechanisms::gyroscope::Gyroscope;
 //! use gyro_sim::{Corrected, Dop853, Mechanism, Partitioned, Partitioning, Solver};
 //!
 //! let gyroscope = Gyroscope::<f64>::default();
@@ -61,10 +59,7 @@
 //!     solver.advance(&gyroscope, t, 1e-4, 5, &mut state)?;
 //! }
 //! assert!((gyroscope.energy(1.0, &state).total() - 0.05).abs() < 1e-12);
-//! # Ok(())
-//! # }
-//! # #[cfg(not(feature = "generated"))]
-//! # fn main() {}
+//! # Ok::<(), gyro_sim::Error>(())
 //! ```
 //!
 //! Mechanisms are modules that `gyro-codegen` writes from a model file (this crate ships some in `generated`), or

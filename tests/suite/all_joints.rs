@@ -4,8 +4,8 @@
 
 use gyro_model::{Model, to_f64};
 use gyro_runner::{Between, Input, JointSample, Sample, Settings};
-use gyro_sim_suite::generated::all_joints::{AllJoints, Parameters};
-use gyro_sim_suite::{Engine, Run, dense, fed, generated, model, simulate, worst};
+use gyro_sim_suite::own::all_joints::index;
+use gyro_sim_suite::{Engine, Run, compiled, dense, fed, generated, model, simulate, worst};
 
 /// Long enough for all of it to move, at the model file's step.
 const SETTINGS: Settings = Settings { t_end: 0.3, step: 1e-3, correct_every: Some(5e-3), sample_every: 0.03 };
@@ -75,11 +75,11 @@ fn parameters_change_the_mechanism() {
     let [first, second] = text;
     let model =
         model("all-joints").with_parameters(&[(first, ratio.clone()), (second, mass.clone())]).unwrap();
-    let mechanism = Engine::new(AllJoints::new(Parameters {
-        gear_ratio: to_f64(&ratio),
-        puck_mass: to_f64(&mass),
-        ..Parameters::default()
-    }));
+    let mut mechanism = compiled::<f64>("all-joints");
+    for (place, value) in [(index::parameter::GEAR_RATIO, &ratio), (index::parameter::PUCK_MASS, &mass)] {
+        assert!(mechanism.set_parameter(place, to_f64(value)));
+    }
+    let mechanism = Engine::new(mechanism);
     let run = [&mechanism, &dense(&model)].map(|engine| run(engine, &model));
     let found = differences(&run[0], &run[1]);
     println!("all joints, other parameters: {found:?}");

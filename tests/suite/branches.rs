@@ -4,13 +4,14 @@
 
 use crate::poses::{HEAD, hinge, read, rod, rough};
 use gyro_assembled::Dense;
+use gyro_jit::Native;
 use gyro_model::Model;
 use gyro_runner::motion::{MotionBuilder, Projecting};
 use gyro_runner::{
     Approach, BodySample, Correction, Failure, Integrator, Sample, Settings, Summary, When, balance,
 };
 use gyro_sim::Real;
-use gyro_sim_suite::{Engine, Random, duals, extreme, generated, model, moved, played, start_of};
+use gyro_sim_suite::{Engine, Random, duals, generated, generated_in, model, moved, played, start_of};
 use std::f64::consts::{PI, TAU};
 
 /// Runs of the seeded sample; `GYRO_BRANCHES` asks for another number.
@@ -313,13 +314,15 @@ impl Case {
         if self.is_single { self.run_in::<f32>() } else { self.run_in::<f64>() }
     }
 
-    fn run_in<T: Real + gyro_assembled::Number + 'static>(&self) -> (Vec<Sample>, Result<Summary, Failure>) {
+    fn run_in<T: Native + Real + gyro_assembled::Number + 'static>(
+        &self,
+    ) -> (Vec<Sample>, Result<Summary, Failure>) {
         let by = (&self.settings, &self.approach);
         if let Linkage::InLine = self.linkage {
             let page = "four-bar-in-line";
             let mut start = start_of(&model(page));
             start.velocities.iter_mut().for_each(|v| *v *= self.start[1] / 12.0);
-            let engine = extreme::<T>(page);
+            let engine = generated_in::<T>(page);
             return moved(&engine, &*engine.builder(duals(page)), by, &start);
         }
         let model: Model = read(&self.linkage.page(self.start[0], self.start[1]));

@@ -110,6 +110,7 @@ fn states(printed: &str) -> Vec<Vec<f64>> {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn a_package_outside_generates_its_own_mechanisms() {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("nested");
     let page = fixture("double-pendulum.toml");
@@ -151,6 +152,7 @@ fn of_the_tutorial(language: &str) -> Vec<String> {
 /// The model file, the manifest, the build script and the program of docs/tutorial.md make a package that builds and
 /// runs, and prints what the tutorial says.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn the_tutorial_s_package_builds_and_runs() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tutorial");
     let _ = fs::remove_dir_all(&folder);

@@ -6,9 +6,7 @@
 
 use gyro_reference::{BushingFourBar, JointRow};
 use gyro_sim::{CloseLoops, Control, Joint, JointJacobian, JointSpace, Rodas4, Solver};
-use gyro_sim_suite::mechanism;
-
-type Linkage = mechanism!("four-bar-bushing", f64);
+use gyro_sim_suite::compiled;
 
 /// s.
 const T_END: f64 = 1.0;
@@ -21,7 +19,7 @@ const STEPS: u64 = 200;
 
 /// The worst error over one and the value, and the number of steps.
 fn run(tolerance: f64, expected: &JointRow) -> (f64, u64) {
-    let linkage = Linkage::default();
+    let linkage = compiled::<f64>("four-bar-bushing");
     let (mut x, mut loops) = (linkage.joint_start(), CloseLoops::new(&linkage));
     loops.correct(&linkage, 0.0, &mut x).unwrap();
     let method = Rodas4::new(&x, linkage.jacobian_buffers().jacobian);

@@ -125,6 +125,7 @@ fn a_loop_on_a_turning_carrier_runs_for_a_thousand_turns() {
 /// The check must be able to fail: along global axes the same rows lose their rank twice a turn, and the run goes on
 /// only as it is led over these poses.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn along_global_axes_the_loop_loses_its_rank() {
     let mut model = model(PAGE);
     model.redundant.iter_mut().for_each(|dropped| dropped.axes = PointAxes::Global);

@@ -1,13 +1,14 @@
 //! What `simulate --verify` says of a run's error is held against the error.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
+use gyro_jit::Native;
 use gyro_reference::{JointRow, scene};
 use gyro_runner::{
     Approach, Coordinates, Difference, Integrator, JointSample, Sample, Settings, companions, differences,
 };
 use gyro_sim::Real;
 use gyro_sim_suite::{
-    Duals, EXTREME, Engine, duals, extreme, fixture_folders, generated, model, moved, rotation, start_of,
+    Duals, EXTREME, Engine, duals, fixture_folders, generated, generated_in, model, moved, rotation, start_of,
 };
 use std::collections::HashMap;
 
@@ -126,12 +127,12 @@ impl Page {
         })
     }
 
-    fn duals<T: Real + 'static>(&self) -> Duals<T> {
+    fn duals<T: Native + Real>(&self) -> Duals<T> {
         if EXTREME.contains(&self.name.as_str()) { duals(&self.name) } else { Duals::none() }
     }
 
     /// A run by an approach in steps of so many times the model file's own.
-    fn check<T: Real + 'static>(&mut self, engine: &Engine<T>, times: f64, approach: &Approach) {
+    fn check<T: Native + Real>(&mut self, engine: &Engine<T>, times: f64, approach: &Approach) {
         let (step, start) = (times * self.settings.step, start_of(&model(&self.name)));
         let settings = Settings { step, correct_every: Some(5.0 * step), ..self.settings };
         let what = format!("{}, {approach}, step {step:e} s", self.name);
@@ -198,7 +199,7 @@ fn the_estimate_is_of_the_size_of_the_error() {
             page.check(&engine, 1.0, &controlled(Integrator::Rodas4, 1e-5));
         }
         if is_extreme {
-            page.check(&extreme::<f32>(&name), 1.0, &Approach::default());
+            page.check(&generated_in::<f32>(&name), 1.0, &Approach::default());
         }
         assert!(page.n_estimates > 0, "{name}: nothing to estimate");
         println!("{name}: {} estimates, {:.2?} times the error", page.n_estimates, page.range);

@@ -3,15 +3,15 @@
 //! wrong.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_mechanisms as shipped;
 use gyro_reference::{DoubleDouble, Gyroscope as Reference, JointRow, Start as ReferenceStart, scene};
 use gyro_runner::{JointSample, Sample, Settings};
 use gyro_sim::{
     CorrectedDynamics, Direct, Dynamics, Error, Exact, Joint, JointCoordinate, JointSpace, Mechanism,
     Partition, Partitioned, Rk4, Turns,
 };
-use gyro_sim_suite::generated as own;
-use gyro_sim_suite::{Engine, Random, Run, coordinate, fed, generated, model, simulate, violated_start};
+use gyro_sim_suite::{
+    Engine, Random, Run, compiled, coordinate, fed, generated, model, simulate, violated_start,
+};
 
 /// Steps between corrections, as in the paper.
 const STEPS_PER_CORRECTION: u32 = 5;
@@ -301,19 +301,20 @@ fn assert_refused<M: Partition<Scalar = f64> + Dynamics + CorrectedDynamics>(wha
 #[test]
 fn inputs_that_are_no_numbers_are_an_error() {
     for value in NO_NUMBERS {
-        let motor = own::motor::Motor::<f64> { torque: value };
+        let mut motor = generated("motor");
+        assert!(motor.set_input(0, value));
         assert_refused(&format!("a torque of {value}"), &motor);
     }
 }
 
 #[test]
 fn parameters_that_are_no_numbers_are_an_error() {
-    type Parametric = shipped::gyroscope_parameters::GyroscopeParameters<f64>;
-    for (place, name) in Parametric::PARAMETERS.into_iter().enumerate() {
+    let page = "gyroscope-parameters";
+    for (place, parameter) in model(page).parameters.iter().enumerate() {
         for value in NO_NUMBERS {
-            let mut mechanism = Parametric::default();
+            let mut mechanism = compiled::<f64>(page);
             assert!(mechanism.set_parameter(place, value));
-            assert_refused(&format!("{name} = {value}"), &mechanism);
+            assert_refused(&format!("{} = {value}", parameter.name), &mechanism);
         }
     }
 }

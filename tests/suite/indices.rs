@@ -2,7 +2,7 @@
 
 use gyro_sim::{JointPlace, JointSpace, Mechanism};
 use gyro_sim_suite::own::all_joints::{AllJoints, index};
-use gyro_sim_suite::{mechanism, model, own, shipped};
+use gyro_sim_suite::{model, own, shipped};
 
 /// Where the coordinate of a joint and its rate stand.
 fn places<M: JointSpace>(mechanism: &M, joint: &str, coordinate: u16) -> (usize, usize) {
@@ -41,7 +41,7 @@ fn joints_of_every_kind_are_where_the_constants_say() {
 fn orientations_and_free_bodies_are_where_the_constants_say() {
     use own::spherical::index as spherical;
     let joint = &model("spherical").joints[0].name;
-    let mechanism = <mechanism!("spherical", f64)>::default();
+    let mechanism = own::spherical::Spherical::<f64>::default();
     assert_eq!(joint, "tip");
     let found = (spherical::joint::orientation::TIP, spherical::joint_rate::orientation::TIP);
     assert_eq!(found, places(&mechanism, joint, 0));

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
+use gyro_mechanisms::gyroscope::Gyroscope;
 use gyro_reference::Gyroscope as Reference;
-use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::integrate::Method;
 use gyro_sim::{
     ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, Exact, Joint, JointSpace, Kutta4,

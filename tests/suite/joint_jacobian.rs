@@ -3,12 +3,10 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use crate::joint_space::random_state;
-use gyro_mechanisms as shipped;
 use gyro_runner::motion::{Linear, TreeWithJacobian};
 use gyro_runner::{Approach, Event, Settings, run_by};
 use gyro_sim::{Dual, Dynamics, JointJacobian, JointSpace, Mechanism};
-use gyro_sim_suite::generated as own;
-use gyro_sim_suite::{Engine, Random, dense, model, start_of};
+use gyro_sim_suite::{Engine, Random, compiled, dense, interpreted, model, start_of};
 use nalgebra::{DMatrix, DVector};
 
 const STATES: usize = 20;
@@ -139,27 +137,28 @@ where
 
 #[test]
 fn jacobians_are_limits_of_the_twin_s_differences() {
-    check("compound-pendulum", &shipped::compound_pendulum::CompoundPendulum::default());
-    check("gyroscope", &shipped::gyroscope::Gyroscope::default());
-    check(
+    for page in [
+        "compound-pendulum",
+        "gyroscope",
         "gyroscope-combined-offsets",
-        &shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets::default(),
-    );
-    check("gyroscope-maximal", &shipped::gyroscope_maximal::GyroscopeMaximal::default());
-    check("gyroscope-viscous", &shipped::gyroscope_viscous::GyroscopeViscous::default());
-    check("pitching-gyroscope", &shipped::pitching_gyroscope::PitchingGyroscope::default());
-    check("torsion", &shipped::torsion::Torsion::default());
-    check("cylindrical", &own::cylindrical::Cylindrical::default());
-    check("friction", &own::friction::Friction::default());
-    check("gyroscope-bearings", &own::gyroscope_bearings::GyroscopeBearings::default());
-    check("motor", &own::motor::Motor::default());
-    check("pendulum", &own::pendulum::Pendulum::default());
-    check("pitching-bearings", &own::pitching_bearings::PitchingBearings::default());
-    check("planar", &own::planar::Planar::default());
-    check("prismatic", &own::prismatic::Prismatic::default());
-    check("screw", &own::screw::Screw::default());
-    check("universal", &own::universal::Universal::default());
-    check("carried", &own::carried::Carried::default());
+        "gyroscope-maximal",
+        "gyroscope-viscous",
+        "pitching-gyroscope",
+        "torsion",
+        "cylindrical",
+        "friction",
+        "gyroscope-bearings",
+        "motor",
+        "pendulum",
+        "pitching-bearings",
+        "planar",
+        "prismatic",
+        "screw",
+        "universal",
+        "carried",
+    ] {
+        check(page, &compiled(page));
+    }
 }
 
 /// The disc's speed loses friction/inertia = 1.5 a second and gains 50 rad/s^2 for a newton metre. The work that motor
@@ -167,11 +166,11 @@ fn jacobians_are_limits_of_the_twin_s_differences() {
 #[test]
 fn a_linearisation_has_the_mechanism_s_own_states_alone() {
     let model = model("motor");
-    let builder = TreeWithJacobian(own::motor::Motor::<Dual<f64, 4>>::default());
+    let builder = TreeWithJacobian(interpreted::<Dual<f64, 4>>("motor"));
     let approach = Approach { examine: true, ..Approach::default() };
     let settings = Settings { t_end: 0.01, step: 1e-3, correct_every: None, sample_every: 0.01 };
     let mut linear = Linear::default();
-    let mut motor = own::motor::Motor::<f64>::default();
+    let mut motor = compiled::<f64>("motor");
     run_by(&mut motor, &builder, (&settings, &approach), &start_of(&model), |event| {
         if let Event::Linear(found) = event {
             linear = found.clone();

@@ -7,7 +7,7 @@ use gyro_reference::DoubleWishbone;
 use gyro_runner::Input;
 use gyro_runner::motion::{COLUMNS, Element, MotionBuilder, OperatingPoint, Tree, TreeWithJacobian};
 use gyro_sim::{CloseLoops, Dual, JointLayout, JointPlace, JointSpace, Mechanism, Partition};
-use gyro_sim_suite::{Random, mechanism};
+use gyro_sim_suite::{Random, compiled, interpreted};
 
 /// Central differences of fourth order.
 fn slope(step: f64, f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
@@ -150,29 +150,28 @@ fn angles<M: JointSpace<Scalar = f64>>(mechanism: &M, x: &M::Joints) -> Vec<f64>
     angles
 }
 
-macro_rules! check_in_duals {
-    ($($page:tt)*) => {
-        $(check(
-            $page,
-            &<mechanism!($page, f64)>::default(),
-            &Tree(<mechanism!($page, Dual<f64, COLUMNS>)>::default()),
-        );)*
-    };
-}
-
 #[test]
 fn linearisations_are_limits_of_differences() {
-    type Motor<T> = mechanism!("motor", T);
-    check("motor", &Motor::<f64>::default(), &TreeWithJacobian(Motor::<Dual<f64, COLUMNS>>::default()));
-    check_in_duals!["motor" "pendulum" "carried" "double-wishbone" "stewart-platform" "carried-four-bar" "driven-four-bar"];
+    check("motor", &compiled("motor"), &TreeWithJacobian(interpreted::<Dual<f64, COLUMNS>>("motor")));
+    for page in [
+        "motor",
+        "pendulum",
+        "carried",
+        "double-wishbone",
+        "stewart-platform",
+        "carried-four-bar",
+        "driven-four-bar",
+    ] {
+        check(page, &compiled(page), &Tree(interpreted::<Dual<f64, COLUMNS>>(page)));
+    }
 }
 
 /// A and C of the wishbone against differences of its reference, which shares nothing with the generator. The start is
 /// no equilibrium, so A depends on which coordinates are independent: what it says of the reference's motion counts.
 #[test]
 fn the_wishbone_s_linearisation_is_that_of_its_reference() {
-    type Wishbone<T> = mechanism!("double-wishbone", T);
-    let (mechanism, builder) = (Wishbone::<f64>::default(), Tree(Wishbone::<Dual<f64, COLUMNS>>::default()));
+    let page = "double-wishbone";
+    let (mechanism, builder) = (compiled::<f64>(page), Tree(interpreted::<Dual<f64, COLUMNS>>(page)));
     let (y, reference) = (mechanism.start(), DoubleWishbone::default());
     let start = [reference.height, reference.angle, 0.0, 0.0];
     let outputs = mechanism.description().outputs;

@@ -3,9 +3,9 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use gyro_assembled::Dense;
+use gyro_mechanisms::gyroscope::Gyroscope;
 use gyro_reference::{Gyroscope as Reference, Scheme};
 use gyro_runner::Settings;
-use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::integrate::Method;
 use gyro_sim::{
     Control, Direct, Error, Exact, Kutta4, MassWeighted, Mechanism, Partition, Partitioned, Solver, Tsit5,

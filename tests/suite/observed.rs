@@ -2,9 +2,9 @@
 //! state.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
+use gyro_jit::Compiled;
 use gyro_sim::{Description, Frames, JointOutputs, JointPlace, JointSpace, Mechanism, OutputDerivatives};
-use gyro_sim_suite::generated::manipulator::Manipulator;
-use gyro_sim_suite::{Engine, Random, dense, model};
+use gyro_sim_suite::{Engine, Random, compiled, dense, model};
 
 const STATES: usize = 200;
 
@@ -57,7 +57,7 @@ fn at<M: JointOutputs<Scalar = f64>>(mechanism: &M, dense: &Engine, t: f64, x: &
 #[test]
 fn outputs_and_frames_of_a_joint_state_are_those_of_its_maximal_state() {
     let (mut mechanism, model, mut random) =
-        (Manipulator::<f64>::default(), model("manipulator"), Random::new(11));
+        (compiled::<f64>("manipulator"), model("manipulator"), Random::new(11));
     assert_eq!(mechanism.frame_names(), ["palm", "fingertip"]);
     let n_x = mechanism.joint_layout().n_coordinates();
     let n_u = mechanism.joint_layout().n_rates();
@@ -81,7 +81,7 @@ fn outputs_and_frames_of_a_joint_state_are_those_of_its_maximal_state() {
         for (name, (jacobian, bias)) in mechanism.frame_names().iter().zip(frames) {
             // Velocities are linear in the rates.
             for rate in 0..n_u {
-                let mut faster = x;
+                let mut faster = x.clone();
                 faster[n_x + rate] += 1.0;
                 let faster = at(&mechanism, &dense, t, &faster);
                 let [faster, slower] =
@@ -118,15 +118,15 @@ const SLOPES: f64 = 1e-8;
 
 #[test]
 fn derivatives_of_outputs_are_their_differences() {
-    let (mut mechanism, mut random) = (Manipulator::<f64>::default(), Random::new(12));
+    let (mut mechanism, mut random) = (compiled::<f64>("manipulator"), Random::new(12));
     let n_x = mechanism.joint_layout().n_coordinates();
     let n = n_x + mechanism.joint_layout().n_rates();
-    let accelerations = |mechanism: &Manipulator<f64>, t: f64, x: &_| {
+    let accelerations = |mechanism: &Compiled<f64>, t: f64, x: &_| {
         let mut rates = mechanism.joint_buffers().rates;
         mechanism.joint_accelerations(t, x, &mut rates);
         rates
     };
-    let outputs = |mechanism: &Manipulator<f64>, t: f64, x: &_| {
+    let outputs = |mechanism: &Compiled<f64>, t: f64, x: &_| {
         let mut outputs = mechanism.buffers().outputs;
         mechanism.joint_outputs(t, x, &mut outputs);
         outputs.to_vec()
@@ -134,10 +134,8 @@ fn derivatives_of_outputs_are_their_differences() {
     let mut worst = 0.0_f64;
     for _ in 0..20 {
         let t = random.signed();
-        assert!(
-            mechanism.set_input(0, random.signed())
-                && mechanism.set_parameter(0, 1.0 + 0.3 * random.signed())
-        );
+        let (torque, payload) = (random.signed(), 1.0 + 0.3 * random.signed());
+        assert!(mechanism.set_input(0, torque) && mechanism.set_parameter(0, payload));
         let x = random_state(&mechanism, &mut random);
         let (rates, mut slopes) = (accelerations(&mechanism, t, &x), mechanism.output_slopes());
         mechanism.outputs_by_state(t, &x, &rates, &mut slopes.by_state);
@@ -154,7 +152,7 @@ fn derivatives_of_outputs_are_their_differences() {
         };
         for k in 0..n {
             let at = |h: f64| {
-                let mut moved = x;
+                let mut moved = x.clone();
                 moved[k] += h;
                 moved
             };
@@ -163,7 +161,7 @@ fn derivatives_of_outputs_are_their_differences() {
             hold((&slopes.by_state, n, k), &of_rates, &differences);
         }
         let with_input = |h: f64| {
-            let (mut other, torque) = (mechanism, mechanism.torque);
+            let mut other = mechanism.clone();
             assert!(other.set_input(0, torque + h));
             other
         };
@@ -171,7 +169,7 @@ fn derivatives_of_outputs_are_their_differences() {
         let differences = slope(STEP, |h| outputs(&with_input(h), t, &x));
         hold((&slopes.by_inputs, 1, 0), &of_rates, &differences);
         let with_payload = |h: f64| {
-            let (mut other, payload) = (mechanism, mechanism.parameters().payload);
+            let mut other = mechanism.clone();
             assert!(other.set_parameter(0, payload + h));
             other
         };

@@ -2,15 +2,14 @@
 //! at coarse and fine tolerances alike, or named.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_mechanisms::four_bar_in_line::FourBarInLine;
 use gyro_model::Model;
 use gyro_reference::Pendulum;
 use gyro_runner::motion::{MotionBuilder, Projecting, WithDuals};
 use gyro_runner::{Approach, Coordinates, Correction, Failure, Grade, Integrator, Sample, Settings, Summary};
 use gyro_sim::{CloseLoops, JointSpace, Mechanism};
-use gyro_sim_suite::generated::two_four_bars::TwoFourBars;
 use gyro_sim_suite::{
-    Duals, Engine, coordinate, dense, duals, generated, judged, model, moved, start_of, worst,
+    Duals, Engine, compiled, coordinate, dense, duals, generated, generated_with_joints, judged, model,
+    moved, start_of, worst,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
@@ -202,8 +201,8 @@ fn generated_code_passes_by_every_integrator() {
 fn joint_coordinates_pass_at_every_tolerance() {
     let in_line = in_line();
     let of_gravity: fn(f64) -> f64 = |from_gravity| from_gravity - FRAC_PI_2;
-    let two_cells = Engine::of_tree(TwoFourBars::default());
-    let one = Engine::of_tree(FourBarInLine::default());
+    let two_cells = generated_with_joints("two-four-bars");
+    let one = generated_with_joints("four-bar-in-line");
     for (page, engine, t_end, n_bars, pendulum, angle) in [
         ("four-bar-in-line", one, 2.0, 2, in_line, of_gravity),
         ("two-four-bars", two_cells, 20.0, 3, as_pendulum(2, 1.0), pivot_angle),
@@ -233,7 +232,7 @@ fn joint_coordinates_pass_at_every_tolerance() {
 /// counted as so many times nearer, leaps over the pose would be allowed to be off by as much.
 #[test]
 fn cells_in_line_at_once_are_about_as_clear_as_one() {
-    let cells = TwoFourBars::<f64>::default();
+    let cells = compiled::<f64>("two-four-bars");
     let (mut loops, mut x) = (CloseLoops::new(&cells), cells.joint_start());
     for angle in [0.5, 0.1, 0.01, 1e-3] {
         // All bars stand at this angle to the ground, and couplers lie along it.
@@ -261,7 +260,7 @@ fn cells_in_line_at_once_are_about_as_clear_as_one() {
 #[test]
 fn what_a_coarse_tolerance_loses_is_told() {
     let model = model("two-four-bars");
-    let engine = Engine::of_tree(TwoFourBars::default());
+    let engine = generated_with_joints("two-four-bars");
     let (builder, start) = (engine.builder(Duals::none()), start_of(&model));
     let settings = Settings { t_end: 20.0, step: 1e-3, correct_every: None, sample_every: 0.4 };
     for (integrator, tolerance) in [Integrator::Dop853, Integrator::Tsit5, Integrator::Rodas4]
@@ -336,7 +335,7 @@ pub(crate) fn rough(angle: f64) -> String {
 fn two_cells_pass_for_twenty_seconds_in_both_engines() {
     let page = model("two-four-bars");
     let engines = [("generated", generated("two-four-bars")), ("dense", dense(&page))];
-    let rodas = WithDuals(Duals::new(TwoFourBars::default()));
+    let rodas = WithDuals(duals("two-four-bars"));
     let kits: [&dyn MotionBuilder<Engine>; 2] = [&rodas, &Projecting];
     for (engine, integrator, tolerance, correction) in [
         (0, Integrator::Dop853, 1e-6, Correction::Partition),

@@ -2,11 +2,13 @@
 //! order.
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
-use gyro_mechanisms as shipped;
 use gyro_model::Model;
 use gyro_reference::{JointRow, SceneReference, scene};
 use gyro_runner::{Approach, Coordinates, JointSample, Sample, Settings};
-use gyro_sim_suite::{Duals, Engine, fixture_folders, generated, model, moved, rotation, simulate, start_of};
+use gyro_sim_suite::{
+    Duals, Engine, fixture_folders, generated, generated_with_joints, model, moved, rotation, simulate,
+    start_of,
+};
 
 /// Steps of the model file's own length.
 const STEPS: f64 = 20.0;
@@ -81,15 +83,15 @@ fn every_shipped_page_with_joints_moves_as_its_reference() {
 
 #[test]
 fn loops_and_driven_joints_move_as_their_references_in_joint_coordinates() {
-    let engines: [(&str, Engine); 6] = [
-        ("double-wishbone", Engine::of_tree(shipped::double_wishbone::DoubleWishbone::default())),
-        ("four-bar-bushing", Engine::of_tree(shipped::four_bar_bushing::FourBarBushing::default())),
-        ("four-bar-in-line", Engine::of_tree(shipped::four_bar_in_line::FourBarInLine::default())),
-        ("four-bar-revolute", Engine::of_tree(shipped::four_bar_revolute::FourBarRevolute::default())),
-        ("gyroscope-four-bar", Engine::of_tree(shipped::gyroscope_four_bar::GyroscopeFourBar::default())),
-        ("slider-crank", Engine::of_tree(shipped::slider_crank::SliderCrank::default())),
-    ];
-    for (page, engine) in engines {
+    for page in [
+        "double-wishbone",
+        "four-bar-bushing",
+        "four-bar-in-line",
+        "four-bar-revolute",
+        "gyroscope-four-bar",
+        "slider-crank",
+    ] {
+        let engine: Engine = generated_with_joints(page);
         let (scene, model) = (scene(page).expect("it has a reference"), model(page));
         let approach = Approach { coordinates: Coordinates::Joint, ..Approach::default() };
         let by = (&settings(&model), &approach);

@@ -1,6 +1,6 @@
 //! Kernels take any scalar: packs of lanes and dual numbers run the same generated source.
 
-use gyro_mechanisms::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
+use gyro_mechanisms::gyroscope_parameters::GyroscopeParameters;
 use gyro_sim::{Dynamics, Elementary, Mechanism, Scalar};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -145,7 +145,7 @@ impl Scalar for Dual {
     }
 }
 
-type Gimbal<T> = GyroscopeCombinedOffsets<T>;
+type Gimbal<T> = GyroscopeParameters<T>;
 
 fn derivative<T: Scalar>(y: &<Gimbal<T> as Mechanism>::State) -> <Gimbal<T> as Mechanism>::State {
     let (mechanism, mut dy) = (Gimbal::<T>::default(), *y);

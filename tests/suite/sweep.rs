@@ -4,6 +4,7 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use crate::estimate::{Deviation, deviations, estimate, expected};
+use gyro_jit::Native;
 use gyro_reference::JointRow;
 use gyro_runner::motion::{Linear, Motion, MotionBuilder, OperatingPoint};
 use gyro_runner::{
@@ -11,7 +12,7 @@ use gyro_runner::{
     Summary, differences, time_by,
 };
 use gyro_sim::{JointLayout, Real};
-use gyro_sim_suite::{Duals, Engine, duals, extreme, mechanism, model, moved, start_of};
+use gyro_sim_suite::{Duals, Engine, duals, generated_in, generated_with_joints, model, moved, start_of};
 use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
 
@@ -44,22 +45,11 @@ const SCENES: [Scene; 15] = [
     Scene { page: "slider-crank", t_end: 0.2, step: 2e-4 },
 ];
 
-/// A scene's mechanism, plain and in dual numbers; of loops with their joint coordinates.
-fn engines<T: Real + 'static>(page: &str) -> (Engine<T>, Duals<T>) {
-    macro_rules! of_loop {
-        ($page:tt) => {
-            (
-                Engine::of_tree(<mechanism!($page, T)>::default()),
-                Duals::new(<mechanism!($page, _)>::default()),
-            )
-        };
-    }
-    match page {
-        "four-bar-bushing" => of_loop!("four-bar-bushing"),
-        "four-bar-in-line" => of_loop!("four-bar-in-line"),
-        "slider-crank" => of_loop!("slider-crank"),
-        _ => (extreme(page), duals(page)),
-    }
+/// A scene's mechanism, plain and in dual numbers; of some loops with their joint coordinates.
+fn engines<T: Native + Real>(page: &str) -> (Engine<T>, Duals<T>) {
+    let with_joints = ["four-bar-bushing", "four-bar-in-line", "slider-crank"].contains(&page);
+    let engine = if with_joints { generated_with_joints(page) } else { generated_in(page) };
+    (engine, duals(page))
 }
 
 /// How far off a result may be in units of the tolerance.
@@ -116,7 +106,7 @@ struct Stand<T> {
     start: Start,
 }
 
-impl<T: Real + 'static> Stand<T> {
+impl<T: Native + Real> Stand<T> {
     fn new(page: &str, start: &Start) -> Self {
         let (engine, duals) = engines::<T>(page);
         let builder = Box::new(LoopsNotLinearised(engine.builder(duals)));
@@ -329,7 +319,7 @@ impl<'a> Judge<'a> {
         }
     }
 
-    fn sweep<T: Real + 'static>(&mut self, what: &str, tolerances: &[f64]) {
+    fn sweep<T: Native + Real>(&mut self, what: &str, tolerances: &[f64]) {
         let stand = Stand::<T>::new(self.scene.page, &self.double.start);
         for (coordinates, correction) in keepings(stand.engine.is_tree()) {
             let approach = Approach { coordinates, correction, ..Approach::default() };
@@ -353,7 +343,7 @@ impl<'a> Judge<'a> {
     }
 
     /// A tolerance that no number of this precision can meet is refused before the first step.
-    fn refused<T: Real + 'static>(&mut self, tolerance: f64) {
+    fn refused<T: Native + Real>(&mut self, tolerance: f64) {
         let stand = Stand::<T>::new(self.scene.page, &self.double.start);
         let settings = self.scene.settings(1.0);
         for (integrator, (coordinates, correction)) in
@@ -373,7 +363,7 @@ impl<'a> Judge<'a> {
     }
 
     /// Twice the step has sixteen times the error: that much is allowed, ten times, besides a rounding a step.
-    fn fixed<T: Real + 'static>(&mut self, what: &str, stand: &Stand<T>, approach: &Approach) {
+    fn fixed<T: Native + Real>(&mut self, what: &str, stand: &Stand<T>, approach: &Approach) {
         let [fine, coarse, huge] = [1.0, 2.0, 100.0].map(|times| self.scene.settings(times));
         let (outcome, (twice, _)) = (stand.run(&fine, approach), stand.run(&coarse, approach));
         let gaps = differences(&outcome.0, &twice);

@@ -5,6 +5,7 @@
 
 use crate::estimate::{deviations, expected};
 use gyro_assembled::{Careful, Dense, Number};
+use gyro_jit::Native;
 use gyro_reference::JointRow;
 use gyro_runner::motion::{MotionBuilder, Projecting};
 use gyro_runner::{
@@ -12,7 +13,7 @@ use gyro_runner::{
     Promise, Remark, Sample, Settings, Start, Summary, When, balance, companions, judge,
 };
 use gyro_sim::Real;
-use gyro_sim_suite::{EXTREME, Engine, Random, duals, extreme, model, moved, start_of};
+use gyro_sim_suite::{EXTREME, Engine, Random, duals, generated_in, model, moved, start_of};
 use std::collections::{BTreeMap, HashMap};
 
 /// Samples of a run.
@@ -73,14 +74,14 @@ type Outcome = (Vec<Sample>, Result<Summary, Failure>);
 
 impl Stand {
     fn new(page: &str, form: Form) -> Self {
-        fn with_kit<T: Real + Number + 'static>(
+        fn with_kit<T: Native + Real + Number + 'static>(
             page: &str,
             form: Form,
         ) -> (Engine<T>, Box<dyn MotionBuilder<Engine<T>>>) {
             let model = model(page);
             match (form, Careful::<T>::new(&model)) {
                 (Form::Generated, _) => {
-                    let engine = extreme::<T>(page);
+                    let engine = generated_in::<T>(page);
                     let builder = engine.builder(duals(page));
                     (engine, builder)
                 }
@@ -416,12 +417,14 @@ fn check(form: Form, n_runs: usize) -> Tally {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn no_wrong_run_is_good_and_advice_does_what_it_says() {
     let tally = check(Form::Generated, RUNS);
     assert!(tally.grades.len() == 3 && tally.followed > RUNS / 10, "{:?}", tally.grades);
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn no_wrong_run_of_a_twin_is_good() {
     check(Form::Twin, RUNS_OF_TWINS);
 }

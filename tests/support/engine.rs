@@ -5,7 +5,8 @@ mod erased;
 
 pub use erased::Choice;
 
-use erased::{Erased, ErasedDuals, ErasedTree, Term};
+use erased::{Erased, ErasedTree, Term};
+use gyro_jit::Interpreted;
 use gyro_runner::motion::{COLUMNS, Closing, Maximal, MotionBuilder, TreeWithJacobian, WithDuals};
 use gyro_sim::{
     Buffers, Clearance, CorrectedDynamics, Description, Dual, Dynamics, Energy, Error, JacobianBuffers,
@@ -26,8 +27,8 @@ pub struct Engine<T = f64> {
 type AsTree<T> = for<'a> fn(&'a dyn Erased<T>) -> Option<&'a dyn ErasedTree<T>>;
 
 /// The same mechanism in dual numbers, where there is need of it.
-#[derive(Debug)]
-pub struct Duals<T = f64>(Option<Box<dyn ErasedDuals<T>>>);
+#[derive(Clone, Debug)]
+pub struct Duals<T = f64>(Option<Interpreted<Dual<T, COLUMNS>>>);
 
 impl<T: Real + 'static> Engine<T> {
     /// The same mechanism, its type forgotten.
@@ -66,15 +67,12 @@ impl<T: Real + 'static> Engine<T> {
 }
 
 impl<T: Real + 'static> Duals<T> {
-    /// The same mechanism, its type forgotten.
-    pub fn new<D>(mechanism: D) -> Self
-    where
-        D: Dynamics<Scalar = Dual<T, COLUMNS>> + Clone + Debug + 'static,
-    {
-        Self(Some(Box::new(mechanism)))
+    /// Those of a mechanism.
+    pub fn new(mechanism: Interpreted<Dual<T, COLUMNS>>) -> Self {
+        Self(Some(mechanism))
     }
 
-    /// For what Rodas does not integrate in maximal coordinates: each model file costs its compilation.
+    /// For what Rodas does not integrate in maximal coordinates.
     pub fn none() -> Self {
         Self(None)
     }
@@ -83,12 +81,6 @@ impl<T: Real + 'static> Duals<T> {
 impl<T: 'static> Clone for Engine<T> {
     fn clone(&self) -> Self {
         Self { mechanism: self.mechanism.cloned(), tree: self.tree }
-    }
-}
-
-impl<T: 'static> Clone for Duals<T> {
-    fn clone(&self) -> Self {
-        Self(self.0.as_ref().map(|duals| duals.cloned()))
     }
 }
 

@@ -1,13 +1,17 @@
-//! The model files of models with their generated mechanisms: those that are shipped and those for tests alone.
+//! The model files of models, those that are shipped and those for tests alone, with their generated mechanisms:
+//! derived and compiled in this process, each when it is first asked for. Their functions have the bits that rustc
+//! gives those of modules (`jit/tests`).
 
-use crate::generated as own;
 use crate::{Duals, Engine};
 use gyro_assembled::{Careful, Dense};
-use gyro_codegen::{Functions, Module};
-use gyro_mechanisms as shipped;
+use gyro_codegen::{Effort, Functions, Module};
+use gyro_jit::{Compiled, Interpreted, Native};
 use gyro_model::{Model, Tree};
-use gyro_sim::Real;
+use gyro_sim::{JointSpace, Real, Scalar};
+use std::any::Any;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 /// A folder of model files.
 #[derive(Clone, Debug)]
@@ -20,135 +24,87 @@ pub fn for_each_generated(mut check: impl FnMut(&str, &Engine)) {
     }
 }
 
-/// The type of each mechanism by its model file, `mechanism!("gear-pair", f64)`, and [`generated`].
-macro_rules! mechanisms {
-    ($d:tt $($page:tt $new:ident $from:ident::$module:ident::$name:ident,)*) => {
-        /// The generated type of a model file in some kind of numbers: `mechanism!("gear-pair", f64)`.
-        #[macro_export]
-        macro_rules! mechanism {
-            $(($page, $d scalar:ty) => { $crate::$from::$module::$name<$d scalar> };)*
-        }
+/// What has been compiled, by model files: a lock for each, so that tests wait only for what they need.
+static COMPILED: LazyLock<Mutex<HashMap<String, Arc<Mutex<Option<Compiled<f64>>>>>>> =
+    LazyLock::new(Mutex::default);
 
-        /// The generated mechanism of a model file.
-        ///
-        /// # Panics
-        /// If the model file has no generated mechanism here: every model file must have one.
-        pub fn generated(page: &str) -> Engine {
-            match page {
-                $($page => Engine::$new($from::$module::$name::<f64>::default()),)*
-                _ => panic!("{page}.toml has no line in tests/support/fixtures.rs: add it"),
-            }
-        }
-    };
+/// The generated mechanism of a model file, with the functions that it names, else those that solvers call.
+///
+/// # Panics
+/// If there is no such model file, or this machine is none for which code can be compiled.
+pub fn compiled<T: Native + Real>(page: &str) -> Compiled<T> {
+    let all =
+        COMPILED.lock().unwrap_or_else(PoisonError::into_inner).entry(page.to_owned()).or_default().clone();
+    let mut known = all.lock().unwrap_or_else(PoisonError::into_inner);
+    let double = known.get_or_insert_with(|| {
+        let model = model(page);
+        let named = model.functions.as_ref().map(|names| Functions::named(names.iter().map(String::as_str)));
+        let functions = named.transpose().expect("a model file names functions that there are");
+        let compiled =
+            gyro_jit::compile(&model, &functions.unwrap_or_else(Functions::of_solvers), Effort::Full);
+        compiled.unwrap_or_else(|error| panic!("{page}: {error}"))
+    });
+    if let Some(same) = (double as &dyn Any).downcast_ref::<Compiled<T>>() {
+        return same.clone();
+    }
+    double.compiled().unwrap_or_else(|error| panic!("{page}: {error}"))
 }
 
-// Of trees those that have joint coordinates here.
-mechanisms! {
-    $
-    "all-joints" new own::all_joints::AllJoints,
-    "armature" new own::armature::Armature,
-    "armatures-in-loop" new own::armatures_in_loop::ArmaturesInLoop,
-    "cam" new own::cam::Cam,
-    "carried" new own::carried::Carried,
-    "carried-block" new own::carried_block::CarriedBlock,
-    "carried-four-bar" new own::carried_four_bar::CarriedFourBar,
-    "compound-pendulum" of_tree shipped::compound_pendulum::CompoundPendulum,
-    "cylindrical" new own::cylindrical::Cylindrical,
-    "differential" of_tree own::differential::Differential,
-    "double-wishbone" new shipped::double_wishbone::DoubleWishbone,
-    "driven-four-bar" new own::driven_four_bar::DrivenFourBar,
-    "driven-gyroscope" of_tree shipped::driven_gyroscope::DrivenGyroscope,
-    "driven-shaft" new own::driven_shaft::DrivenShaft,
-    "driven-stewart" new own::driven_stewart::DrivenStewart,
-    "four-bar" new shipped::four_bar::FourBar,
-    "four-bar-bushing" new shipped::four_bar_bushing::FourBarBushing,
-    "four-bar-in-line" new shipped::four_bar_in_line::FourBarInLine,
-    "four-bar-revolute" new shipped::four_bar_revolute::FourBarRevolute,
-    "free-body" of_tree shipped::free_body::FreeBody,
-    "friction" new own::friction::Friction,
-    "friction-in-loops" new own::friction_in_loops::FrictionInLoops,
-    "gear" new own::gear::Gear,
-    "gear-pair" of_tree own::gear_pair::GearPair,
-    "geared-loop" new own::geared_loop::GearedLoop,
-    "gyroscope" of_tree shipped::gyroscope::Gyroscope,
-    "gyroscope-at-rest" of_tree shipped::gyroscope_at_rest::GyroscopeAtRest,
-    "gyroscope-bearings" new own::gyroscope_bearings::GyroscopeBearings,
-    "gyroscope-combined-offsets" of_tree shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets,
-    "gyroscope-coulomb" of_tree shipped::gyroscope_coulomb::GyroscopeCoulomb,
-    "gyroscope-fast" of_tree shipped::gyroscope_fast::GyroscopeFast,
-    "gyroscope-four-bar" new shipped::gyroscope_four_bar::GyroscopeFourBar,
-    "gyroscope-free-nutation" of_tree shipped::gyroscope_free_nutation::GyroscopeFreeNutation,
-    "gyroscope-gimbal-lock" of_tree shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock,
-    "gyroscope-heavy-rotor" of_tree shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor,
-    "gyroscope-light-rings" of_tree shipped::gyroscope_light_rings::GyroscopeLightRings,
-    "gyroscope-long" of_tree shipped::gyroscope_long::GyroscopeLong,
-    "gyroscope-maximal" of_tree shipped::gyroscope_maximal::GyroscopeMaximal,
-    "gyroscope-misalignments" of_tree shipped::gyroscope_misalignments::GyroscopeMisalignments,
-    "gyroscope-overdamped" of_tree shipped::gyroscope_overdamped::GyroscopeOverdamped,
-    "gyroscope-parameters" of_tree shipped::gyroscope_parameters::GyroscopeParameters,
-    "gyroscope-radial-imbalance" of_tree shipped::gyroscope_radial_imbalance::GyroscopeRadialImbalance,
-    "gyroscope-rolling-base" of_tree shipped::gyroscope_rolling_base::GyroscopeRollingBase,
-    "gyroscope-stiff" of_tree shipped::gyroscope_stiff::GyroscopeStiff,
-    "gyroscope-viscous" of_tree shipped::gyroscope_viscous::GyroscopeViscous,
-    "heavy-top" of_tree shipped::heavy_top::HeavyTop,
-    "held-spatial-loop" new own::held_spatial_loop::HeldSpatialLoop,
-    "loads" new own::loads::Loads,
-    "manipulator" new own::manipulator::Manipulator,
-    "motor" new own::motor::Motor,
-    "parallelogram" new own::parallelogram::Parallelogram,
-    "peaucellier" new own::peaucellier::Peaucellier,
-    "pendulum" new own::pendulum::Pendulum,
-    "pitching-bearings" new own::pitching_bearings::PitchingBearings,
-    "pitching-gyroscope" of_tree shipped::pitching_gyroscope::PitchingGyroscope,
-    "planar" new own::planar::Planar,
-    "planetary" of_tree own::planetary::Planetary,
-    "point-on-line" new own::point_on_line::PointOnLine,
-    "prismatic" new own::prismatic::Prismatic,
-    "rack-and-screw" of_tree own::rack_and_screw::RackAndScrew,
-    "rod" new own::rod::Rod,
-    "screw" of_tree own::screw::Screw,
-    "slider-crank" new shipped::slider_crank::SliderCrank,
-    "spatial-slider-crank" new own::spatial_slider_crank::SpatialSliderCrank,
-    "spherical" new own::spherical::Spherical,
-    "spinning-top" of_tree shipped::spinning_top::SpinningTop,
-    "springs-in-loop" new own::springs_in_loop::SpringsInLoop,
-    "stabilised-gimbal" of_tree shipped::stabilised_gimbal::StabilisedGimbal,
-    "stewart-platform" new shipped::stewart_platform::StewartPlatform,
-    "stops" new own::stops::Stops,
-    "tether" new own::tether::Tether,
-    "torsion" of_tree shipped::torsion::Torsion,
-    "two-four-bars" new own::two_four_bars::TwoFourBars,
-    "universal" new own::universal::Universal,
-    "weld" new own::weld::Weld,
+/// The same in other numbers, interpreted.
+pub fn interpreted<T: Scalar>(page: &str) -> Interpreted<T> {
+    compiled::<f64>(page).interpreted()
 }
 
-/// Generated mechanisms in single precision: each kind of joint, force, motion and partition is in one of them, but not
-/// every model file, as each costs its compilation.
+/// The generated mechanism of a model file; of a tree with its joint coordinates.
+pub fn generated(page: &str) -> Engine {
+    generated_in(page)
+}
+
+/// The same in any precision.
+pub fn generated_in<T: Native + Real>(page: &str) -> Engine<T> {
+    let compiled = compiled::<T>(page);
+    let is_tree = compiled.scheduled().joint.is_some() && compiled.joint_layout().closure_rows.is_empty();
+    if is_tree { Engine::of_tree(compiled) } else { Engine::new(compiled) }
+}
+
+/// The same, of loops too with joint coordinates.
+pub fn generated_with_joints<T: Native + Real>(page: &str) -> Engine<T> {
+    Engine::of_tree(compiled(page))
+}
+
+/// The same in dual numbers.
+pub fn duals<T: Native + Real>(page: &str) -> Duals<T> {
+    Duals::new(interpreted(page))
+}
+
+/// Generated mechanisms in single precision: each kind of joint, force, motion and partition is in one of them.
 pub fn in_single_precision() -> Vec<(&'static str, Engine<f32>)> {
-    vec![
-        ("cam", Engine::new(own::cam::Cam::default())),
-        ("cylindrical", Engine::new(own::cylindrical::Cylindrical::default())),
-        ("driven-gyroscope", Engine::new(shipped::driven_gyroscope::DrivenGyroscope::default())),
-        ("four-bar-revolute", Engine::new(shipped::four_bar_revolute::FourBarRevolute::default())),
-        ("free-body", Engine::new(shipped::free_body::FreeBody::default())),
-        ("friction", Engine::new(own::friction::Friction::default())),
-        ("gear", Engine::new(own::gear::Gear::default())),
-        ("gyroscope-maximal", Engine::new(shipped::gyroscope_maximal::GyroscopeMaximal::default())),
-        ("gyroscope-parameters", Engine::new(shipped::gyroscope_parameters::GyroscopeParameters::default())),
-        ("loads", Engine::new(own::loads::Loads::default())),
-        ("pendulum", Engine::new(own::pendulum::Pendulum::default())),
-        ("planar", Engine::new(own::planar::Planar::default())),
-        ("point-on-line", Engine::new(own::point_on_line::PointOnLine::default())),
-        ("rod", Engine::new(own::rod::Rod::default())),
-        ("screw", Engine::new(own::screw::Screw::default())),
-        ("stabilised-gimbal", Engine::new(shipped::stabilised_gimbal::StabilisedGimbal::default())),
-        ("stops", Engine::new(own::stops::Stops::default())),
-        ("tether", Engine::new(own::tether::Tether::default())),
-        ("motor", Engine::new(own::motor::Motor::default())),
-        ("universal", Engine::new(own::universal::Universal::default())),
-        ("weld", Engine::new(own::weld::Weld::default())),
-    ]
+    SINGLE.iter().map(|page| (*page, Engine::new(compiled(page)))).collect()
 }
+
+const SINGLE: [&str; 21] = [
+    "cam",
+    "cylindrical",
+    "driven-gyroscope",
+    "four-bar-revolute",
+    "free-body",
+    "friction",
+    "gear",
+    "gyroscope-maximal",
+    "gyroscope-parameters",
+    "loads",
+    "motor",
+    "pendulum",
+    "planar",
+    "point-on-line",
+    "rod",
+    "screw",
+    "stabilised-gimbal",
+    "stops",
+    "tether",
+    "universal",
+    "weld",
+];
 
 /// Extreme scenes, and the plain ones that they are variants of.
 pub const EXTREME: [&str; 13] = [
@@ -166,64 +122,6 @@ pub const EXTREME: [&str; 13] = [
     "four-bar",
     "four-bar-in-line",
 ];
-
-/// The generated mechanism of an extreme scene in any precision.
-///
-/// # Panics
-/// If it is none of [`EXTREME`].
-pub fn extreme<T: Real + 'static>(page: &str) -> Engine<T> {
-    match page {
-        "gyroscope" => Engine::of_tree(shipped::gyroscope::Gyroscope::default()),
-        "gyroscope-fast" => Engine::of_tree(shipped::gyroscope_fast::GyroscopeFast::default()),
-        "gyroscope-at-rest" => Engine::of_tree(shipped::gyroscope_at_rest::GyroscopeAtRest::default()),
-        "gyroscope-light-rings" => {
-            Engine::of_tree(shipped::gyroscope_light_rings::GyroscopeLightRings::default())
-        }
-        "gyroscope-heavy-rotor" => {
-            Engine::of_tree(shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor::default())
-        }
-        "gyroscope-gimbal-lock" => {
-            Engine::of_tree(shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock::default())
-        }
-        "gyroscope-stiff" => Engine::of_tree(shipped::gyroscope_stiff::GyroscopeStiff::default()),
-        "gyroscope-overdamped" => {
-            Engine::of_tree(shipped::gyroscope_overdamped::GyroscopeOverdamped::default())
-        }
-        "gyroscope-coulomb" => Engine::of_tree(shipped::gyroscope_coulomb::GyroscopeCoulomb::default()),
-        "gyroscope-rolling-base" => {
-            Engine::of_tree(shipped::gyroscope_rolling_base::GyroscopeRollingBase::default())
-        }
-        "gyroscope-long" => Engine::of_tree(shipped::gyroscope_long::GyroscopeLong::default()),
-        "four-bar" => Engine::new(shipped::four_bar::FourBar::default()),
-        "four-bar-in-line" => Engine::new(shipped::four_bar_in_line::FourBarInLine::default()),
-        _ => panic!("{page} is no extreme scene"),
-    }
-}
-
-/// The same in dual numbers.
-///
-/// # Panics
-/// If it is none of [`EXTREME`].
-pub fn duals<T: Real + 'static>(page: &str) -> Duals<T> {
-    match page {
-        "gyroscope" => Duals::new(shipped::gyroscope::Gyroscope::default()),
-        "gyroscope-fast" => Duals::new(shipped::gyroscope_fast::GyroscopeFast::default()),
-        "gyroscope-at-rest" => Duals::new(shipped::gyroscope_at_rest::GyroscopeAtRest::default()),
-        "gyroscope-light-rings" => Duals::new(shipped::gyroscope_light_rings::GyroscopeLightRings::default()),
-        "gyroscope-heavy-rotor" => Duals::new(shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor::default()),
-        "gyroscope-gimbal-lock" => Duals::new(shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock::default()),
-        "gyroscope-stiff" => Duals::new(shipped::gyroscope_stiff::GyroscopeStiff::default()),
-        "gyroscope-overdamped" => Duals::new(shipped::gyroscope_overdamped::GyroscopeOverdamped::default()),
-        "gyroscope-coulomb" => Duals::new(shipped::gyroscope_coulomb::GyroscopeCoulomb::default()),
-        "gyroscope-rolling-base" => {
-            Duals::new(shipped::gyroscope_rolling_base::GyroscopeRollingBase::default())
-        }
-        "gyroscope-long" => Duals::new(shipped::gyroscope_long::GyroscopeLong::default()),
-        "four-bar" => Duals::new(shipped::four_bar::FourBar::default()),
-        "four-bar-in-line" => Duals::new(shipped::four_bar_in_line::FourBarInLine::default()),
-        _ => panic!("{page} is no extreme scene"),
-    }
-}
 
 /// The careful runtime-assembled model of a model.
 ///

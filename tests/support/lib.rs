@@ -15,8 +15,9 @@ pub use gyro_mechanisms as shipped;
 pub use against::{along, body, check, check_pairs, cross, pair, reference_body, rotation, times, worst};
 pub use engine::{Choice, Duals, Engine};
 pub use fixtures::{
-    EXTREME, FixtureFolder, careful, dense, duals, extreme, fixture_folders, for_each_generated, generated,
-    in_single_precision, is_open, model, module, page, pages,
+    EXTREME, FixtureFolder, careful, compiled, dense, duals, fixture_folders, for_each_generated, generated,
+    generated_in, generated_with_joints, in_single_precision, interpreted, is_open, model, module, page,
+    pages,
 };
 pub use matrix::{Matrix, difference, phi_pi, phi_q};
 pub use nested::{Said, cargo, say};

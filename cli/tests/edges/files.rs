@@ -112,6 +112,7 @@ fn binary() -> Vec<u8> {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn files_of_every_kind_are_read_or_refused() {
     let folder = Folder::new("files");
     let meshed = |file: &str| {

@@ -407,6 +407,7 @@ const AGREES: [f64; 2] = [1e-12, 1e-4];
 const ROBOTS: u64 = 150;
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn random_robots_keep_mass_and_energy() {
     let folder = Folder::new("random");
     let (mut imported, mut refused) = (0, 0);

@@ -78,6 +78,7 @@ impl Block {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn blocks_on_inclines_rub_by_the_normal_force() {
     let folder = Folder::new("inclines");
     let mut sticking = 0;
@@ -264,6 +265,7 @@ impl Pendulum {
 const STEP: f64 = 5e-4;
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn a_pendulum_in_a_bearing_rubs_by_the_force_in_it() {
     let folder = Folder::new("bearing");
     let common = Pendulum {
@@ -380,6 +382,7 @@ fn key(text: &str, contact: usize, key: &str) -> f64 {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn random_chains_rub_by_the_forces_in_their_joints() {
     let folder = Folder::new("loaded-chains");
     let mut random = ChaCha8Rng::seed_from_u64(2407);
@@ -434,6 +437,7 @@ fn random_chains_rub_by_the_forces_in_their_joints() {
 
 /// In a loop, too: the crank and the rocker of a four-bar in bearings.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn a_loop_rubs_by_the_forces_in_its_joints_until_it_stands() {
     let folder = Folder::new("loaded-loop");
     let text = fs::read_to_string(crate::support::model("four-bar.toml")).unwrap();

@@ -18,6 +18,7 @@ fn complex(value: &Value) -> [f64; 2] {
 /// Free motions at multiples of the period satisfy the recurrence whose roots are the poles, as the exact motion does
 /// that knows no map over a period.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn poles_of_closed_loops_are_those_of_exact_motions() {
     let folder = Folder::new("poles-of-loops");
     let (mut plant, mut loops) = smooth();

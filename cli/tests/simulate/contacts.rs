@@ -141,6 +141,7 @@ fn listed(run: &Value, name: &str) -> Vec<(f64, String, Option<[f64; 2]>)> {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn random_sledges_move_as_parabolas_do() {
     let folder = Folder::new("sledges");
     let mut random = ChaCha8Rng::seed_from_u64(2401);
@@ -227,6 +228,7 @@ pub(crate) fn chain(random: &mut ChaCha8Rng) -> String {
 
 /// By each method either the energy is balanced or the failure has a name; none is wrong in silence.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn random_chains_keep_the_ledger_of_their_energy_and_their_stops() {
     let folder = Folder::new("chains");
     let mut random = ChaCha8Rng::seed_from_u64(2402);
@@ -250,6 +252,7 @@ fn random_chains_keep_the_ledger_of_their_energy_and_their_stops() {
 
 /// Its bearings stick where the vehicle turns back, and slip in between; a stop is hit when the vehicle rolls far.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn the_stabilised_gimbal_sticks_slips_and_hits_its_stop() {
     let folder = Folder::new("gimbal-contacts");
     let page = model("stabilised-gimbal.toml");
@@ -313,6 +316,7 @@ fn grazed(beyond: f64, t_end: f64) -> f64 {
 
 /// All integrators, coordinates, corrections and tolerances over what grazes and chatters: right, or refused by name.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn every_combination_is_right_or_refused() {
     let folder = Folder::new("contact-sweep");
     let mut random = ChaCha8Rng::seed_from_u64(2403);

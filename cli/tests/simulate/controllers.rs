@@ -28,6 +28,7 @@ const METHODS: [&[&str]; 6] = [
 const CLOSE: f64 = 1e-8;
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn random_plants_in_random_loops_move_as_matrix_exponentials_say() {
     let folder = Folder::new("random-loops");
     let mut random = ChaCha8Rng::seed_from_u64(24);

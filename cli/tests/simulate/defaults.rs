@@ -53,6 +53,7 @@ fn runs_well(path: &Path) {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn every_model_file_and_example_runs_well_by_the_plain_command() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut all = Vec::new();
@@ -144,6 +145,7 @@ fn damped(random: &mut ChaCha8Rng) -> String {
 
 /// By the plain command it is right to what its tolerance promises, soft or hard.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn random_chains_run_well_by_the_plain_command() {
     let folder = Folder::new("plain");
     let mut random = ChaCha8Rng::seed_from_u64(4009);

@@ -103,6 +103,7 @@ fn compare(run: &Value, close: f64) {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn events_are_found_by_all_engines_and_methods() {
     let folder = Folder::new("events");
     fs::write(folder.0.join("oscillators.toml"), OSCILLATORS).unwrap();

@@ -331,6 +331,7 @@ fn pushed(is_held: bool) -> [f64; 2] {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn all_engines_follow_inputs_under_error_control() {
     let folder = Folder::new("inputs-controlled");
     fs::write(folder.0.join("mass.toml"), MASS).unwrap();

@@ -120,6 +120,7 @@ const RUNS: [(&[&str], f64); 9] = [
 ];
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn a_pendulum_on_a_cart_that_jerks_is_right_by_all_engines_and_methods() {
     let folder = Folder::new("kinks");
     let mut random = ChaCha8Rng::seed_from_u64(2411);
@@ -274,6 +275,7 @@ fn a_stop_that_is_hit_at_a_kink_is_resolved_with_it() {
 
 /// Chains under a driven joint and on a driven body: two engines, two kinds of coordinates, and the energy's ledger.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn random_driven_chains_agree_and_keep_their_ledger() {
     let folder = Folder::new("kinks-chains");
     let mut random = ChaCha8Rng::seed_from_u64(2413);

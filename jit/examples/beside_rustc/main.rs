@@ -15,6 +15,9 @@ use std::time::Instant;
 /// Random model files to a program.
 const BATCH: u64 = 50;
 
+/// Named model files to a program: they are larger.
+const FILES: usize = 20;
+
 /// A model file: its name, its text and the folder of its tables.
 struct Page {
     name: String,
@@ -27,8 +30,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let is_timed = arguments.iter().any(|argument| argument == "--time");
     let files = arguments.iter().filter(|argument| argument.ends_with(".toml"));
     let files: Vec<Page> = files.map(|file| of_file(Path::new(file))).collect::<Result<_, _>>()?;
-    if !files.is_empty() {
-        compare(&files, is_timed)?;
+    for files in files.chunks(FILES) {
+        compare(files, is_timed)?;
     }
     let numbers: Vec<u64> = arguments.iter().filter_map(|argument| argument.parse().ok()).collect();
     let record = root()?.join("target/beside-rustc.next");
@@ -91,11 +94,12 @@ fn compare(pages: &[Page], is_timed: bool) -> Result<(), Box<dyn Error>> {
         "fn main() {{\n    let mut program = program::Program::new({is_timed});\n{calls}    program.tell();\n}}\n"
     )?;
     fs::write(folder.join("src/main.rs"), main)?;
-    fs::write(folder.join("Cargo.toml"), manifest(root, is_timed))?;
+    fs::write(folder.join("Cargo.toml"), manifest(root))?;
     fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock"))?;
     let cargo = |command: &str| {
         let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-        cargo.args([command, "--quiet", "--release", "--offline", "--manifest-path"]);
+        cargo.args([command, "--quiet", "--offline"]).args(is_timed.then_some("--release"));
+        cargo.arg("--manifest-path");
         cargo.arg(folder.join("Cargo.toml")).env("CARGO_TARGET_DIR", root.join("target"));
         cargo.status()
     };
@@ -123,8 +127,9 @@ fn generated(page: &Page) -> Result<Module, Box<dyn Error>> {
     Ok(gyro_codegen::generate_functions("page.toml", &model, &Functions::of_solvers())?)
 }
 
-/// What is timed is optimised as a user's release build is.
-fn manifest(root: &Path, is_timed: bool) -> String {
+/// What is timed is optimised as a user's release build is; all else is compiled as in the workspace, with which it
+/// shares the crates of others.
+fn manifest(root: &Path) -> String {
     let library = |name: &str, folder: &str| format!("{name} = {{ path = {:?} }}\n", root.join(folder));
     let libraries = [
         library("gyro-codegen", "codegen"),
@@ -136,9 +141,8 @@ fn manifest(root: &Path, is_timed: bool) -> String {
     format!(
         "[package]\nname = \"beside-rustc\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n[dependencies]\n{}\
          gyro-sim = {{ path = {:?}, default-features = false }}\nrand = \"0.10\"\nrand_chacha = \"0.10\"\n\
-         [profile.release.package.beside-rustc]\nopt-level = {}\n",
+         [profile.dev]\nopt-level = 1\ndebug = false\nincremental = false\nlto = \"off\"\ncodegen-units = 16\n",
         libraries.concat(),
         root.join("gyro-sim"),
-        if is_timed { 3 } else { 1 },
     )
 }

@@ -1,8 +1,8 @@
 //! Mechanisms of which the type is forgotten, buffers being slices.
 
-use gyro_runner::motion::{COLUMNS, Maximal};
+use gyro_runner::motion::Maximal;
 use gyro_sim::{
-    Clearance, CorrectedDynamics, Description, Dual, Dynamics, Energy, Error, JointJacobian, JointLayout,
+    Clearance, CorrectedDynamics, Description, Dynamics, Energy, Error, JointJacobian, JointLayout,
     JointSpace, Kinematics, Mechanism, Partition, Projection, Real,
 };
 use std::any::Any;
@@ -80,13 +80,6 @@ pub(super) trait ErasedTree<T> {
     fn close_velocities(&self, t: T, x: &mut [T]);
     fn to_maximal(&self, t: T, x: &[T], y: &mut [T]);
     fn to_joints(&self, t: T, y: &[T], x: &mut [T]);
-}
-
-pub(super) trait ErasedDuals<T>: Debug {
-    fn cloned(&self) -> Box<dyn ErasedDuals<T>>;
-    fn start(&self) -> Vec<Dual<T, COLUMNS>>;
-    fn derivative(&self, t: Dual<T, COLUMNS>, y: &[Dual<T, COLUMNS>], dy: &mut [Dual<T, COLUMNS>]);
-    fn set_input(&mut self, index: usize, value: Dual<T, COLUMNS>) -> bool;
 }
 
 trait ErasedChoice: Any + Debug {
@@ -293,24 +286,5 @@ where
     fn to_joints(&self, t: T, y: &[T], x: &mut [T]) {
         let (y, before) = (&filled(self.start(), y), filled(JointSpace::joint_start(self), x));
         through(before, x, |x| JointSpace::to_joints(self, t, y, x));
-    }
-}
-
-impl<T: Real + 'static, D> ErasedDuals<T> for D
-where
-    D: Dynamics<Scalar = Dual<T, COLUMNS>> + Clone + Debug + 'static,
-{
-    fn cloned(&self) -> Box<dyn ErasedDuals<T>> {
-        Box::new(self.clone())
-    }
-    fn start(&self) -> Vec<Dual<T, COLUMNS>> {
-        listed(Mechanism::start(self))
-    }
-    fn derivative(&self, t: Dual<T, COLUMNS>, y: &[Dual<T, COLUMNS>], dy: &mut [Dual<T, COLUMNS>]) {
-        let y = &filled(Mechanism::start(self), y);
-        through(Mechanism::start(self), dy, |dy| Dynamics::derivative(self, t, y, dy));
-    }
-    fn set_input(&mut self, index: usize, value: Dual<T, COLUMNS>) -> bool {
-        Mechanism::set_input(self, index, value)
     }
 }
