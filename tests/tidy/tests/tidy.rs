@@ -24,7 +24,7 @@ const CRATES: [&str; 16] = [
     "xtask",
     "mechanisms",
     "mechanisms/build",
-    "reference",
+    "tests/reference",
     "benches",
     "yardstick",
 ];
