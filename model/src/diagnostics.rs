@@ -3,10 +3,12 @@
 use std::fmt;
 use std::ops::Range;
 
+mod painted;
+
 use codespan_reporting::diagnostic::{Diagnostic as Report, Label};
 use codespan_reporting::files::{Error, Files};
-use codespan_reporting::term::termcolor::Buffer;
-use codespan_reporting::term::{self, Chars, Config, Styles, StylesWriter};
+use codespan_reporting::term::{self, Chars, Config};
+use painted::Painted;
 
 /// All mistakes of one model file, in the order of the model file.
 #[derive(Clone, Debug)]
@@ -88,24 +90,22 @@ impl Diagnostics {
     /// The mistakes as plain text for a terminal or a log, each with its `file:line:column`: the first thirty, and how
     /// many more there are.
     pub fn render(&self) -> String {
-        self.render_with(Buffer::no_color())
+        self.render_with(Painted::plain())
     }
 
     /// The same with ANSI colours.
     pub fn render_colored(&self) -> String {
-        self.render_with(Buffer::ansi())
+        self.render_with(Painted::colored())
     }
 
-    fn render_with(&self, mut buffer: Buffer) -> String {
+    fn render_with(&self, mut painted: Painted) -> String {
         let config = Config { chars: Chars::ascii(), ..Config::default() };
-        let styles = Styles::default();
         for mistake in self.mistakes.iter().take(SHOWN) {
             let file = Excerpt { page: self, at: mistake.span.start };
-            let mut writer = StylesWriter::new(&mut buffer, &styles);
-            term::emit_to_write_style(&mut writer, &config, &file, &file.report(mistake))
+            term::emit_to_write_style(&mut painted, &config, &file, &file.report(mistake))
                 .expect("spans lie within the text and a buffer in memory takes every write");
         }
-        let mut text = String::from_utf8_lossy(buffer.as_slice()).into_owned();
+        let mut text = painted.text();
         match self.mistakes.len().saturating_sub(SHOWN) {
             0 => {}
             1 => text.push_str("error: and 1 more mistake\n"),
