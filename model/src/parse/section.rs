@@ -361,8 +361,12 @@ impl<'t> Item<'t> {
     pub(super) fn word(&self, reader: &mut Reader<'_>) -> Option<&'static str> {
         let Value::Word(words) = self.key.value else { return None };
         let known: Vec<&'static str> = words.iter().map(|(word, _)| *word).collect();
-        let what = if matches!(self.key.name, "between" | "coordinates") { "word" } else { self.key.name };
-        self.one_of(reader, &known, (what, what))
+        let words = match self.key.name {
+            "between" => ("way between rows", "way"),
+            "coordinates" => ("coordinates", "word"),
+            name => (name, name),
+        };
+        self.one_of(reader, &known, words)
     }
 
     /// One of a table's kinds.
