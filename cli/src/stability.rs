@@ -373,6 +373,7 @@ mod tests {
     const WORST: f64 = 2.0;
 
     #[test]
+    #[ignore = "takes long: `.ci/steps` runs it"]
     fn no_kind_of_configuration_takes_the_digits_of_the_kernels() {
         for model in models(&[]).unwrap() {
             check(&Subject::new(&model).unwrap());
@@ -381,6 +382,7 @@ mod tests {
 
     /// Of modules with numbers, whose joint dynamics are in joint frames and from base inertial parameters.
     #[test]
+    #[ignore = "takes long: `.ci/steps` runs it"]
     fn joint_frames_and_base_parameters_take_no_digits() {
         let chain = models(&[]).unwrap().pop().unwrap();
         let subject = Subject::new(&chain).unwrap();
