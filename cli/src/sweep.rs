@@ -244,8 +244,8 @@ impl Sweep {
 const QUICK: f64 = 0.05;
 const PROBE: u64 = 64;
 
-/// A sweep of which more than this is left, s, is run by a program that rustc compiles: that takes ten seconds and more,
-/// and runs scenarios up to several times as fast.
+/// A sweep of which more than this is left, s, is run by a program that rustc compiles: that takes ten seconds and
+/// more, and runs scenarios up to several times as fast.
 const LONG: f64 = 30.0;
 
 #[expect(clippy::cast_precision_loss, reason = "a number of blocks")]

@@ -116,6 +116,7 @@ fn a_page_elsewhere_is_compiled_and_its_machine_code_measured() {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn a_linkage_says_what_cannot_be_assembled() {
     let found = json(&[&model("four-bar.toml"), "--no-compile"]);
     let elements = found["elements"].as_array().unwrap();

@@ -1,7 +1,8 @@
 //! Scenarios are run: in this process, or by a program of which all but a few lines are here.
 //!
 //! The program reads a [`Job`] from standard input and then, until the input ends, a [`Unit`] at a time; of each block
-//! it writes the record to standard output. A scenario that fails is a row with its error; no scenario ends the program.
+//! it writes the record to standard output. A scenario that fails is a row with its error; no scenario ends the
+//! program.
 
 mod joint;
 pub(crate) mod packs;

@@ -180,6 +180,7 @@ impl Page {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn the_estimate_is_of_the_size_of_the_error() {
     let mut wrong = Vec::new();
     for name in fixture_folders()[0].pages() {

@@ -378,6 +378,7 @@ impl<'a> Judge<'a> {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn every_extreme_scene_ends_right_or_in_a_reason() {
     let mut tally = Tally::default();
     for scene in &SCENES {

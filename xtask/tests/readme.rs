@@ -143,6 +143,7 @@ fn run(command: &[String], folder: &Path) -> Output {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn every_command_works_as_it_is_typed() {
     let folder = Folder::new();
     let mut number = 0;

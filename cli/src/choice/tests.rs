@@ -61,6 +61,7 @@ fn is_unfit(page: &Simulation, args: &SimulateArgs, offers: &Offers) -> bool {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn what_is_typed_counts_then_what_is_written_and_nothing_is_refused_that_could_be_run() {
     let pages = combined(&[
         or_none(&["coordinates = \"joint\"\n", "coordinates = \"maximal\"\n"]),

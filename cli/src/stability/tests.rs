@@ -7,6 +7,7 @@ const MEDIAN: f64 = 3e-15;
 const WORST: f64 = 2.0;
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn no_kind_of_configuration_takes_the_digits_of_the_kernels() {
     for model in models(&[]).unwrap() {
         check(&Subject::new(&model).unwrap());
@@ -15,6 +16,7 @@ fn no_kind_of_configuration_takes_the_digits_of_the_kernels() {
 
 /// Of modules with numbers, whose joint dynamics are in joint frames and from base inertial parameters.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn joint_frames_and_base_parameters_take_no_digits() {
     let chain = models(&[]).unwrap().pop().unwrap();
     let subject = Subject::new(&chain).unwrap();

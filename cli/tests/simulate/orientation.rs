@@ -125,6 +125,7 @@ fn turning(dice: &mut ChaCha8Rng) -> String {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn poses_are_continuous_over_many_turns() {
     let folder = Folder::new("turning-orientation");
     let mut dice = ChaCha8Rng::seed_from_u64(41);

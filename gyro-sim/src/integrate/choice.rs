@@ -5,8 +5,8 @@
 macro_rules! methods {
     ($d:tt $($(#[doc = $doc:literal])* $kind:ident $name:literal $variant:ident = $type:ident, $order:literal;)+) => {
         /// Goes from an [`Integrator`](crate::integrate::Integrator) to the type of its method:
-        /// `by_method!(integrator, fixed A => …, adaptive A => …, implicit => …)`, of which each expression may name the
-        /// type `A` of an explicit method without or with an error estimate.
+        /// `by_method!(integrator, fixed A => …, adaptive A => …, implicit => …)`, of which each expression may
+        /// name the type `A` of an explicit method without or with an error estimate.
         #[macro_export]
         macro_rules! by_method {
             (@fixed $d type:ident $d a:ident $d then:expr, $d b:ident $d adaptive:expr, $d implicit:expr) => {{

@@ -94,6 +94,7 @@ fn kernels_of_shipped_model_files_have_the_bits_of_their_tapes() {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn kernels_of_random_model_files_have_the_bits_of_their_tapes() {
     for seed in 0..4 {
         let name = format!("page {seed}");

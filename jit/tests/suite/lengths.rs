@@ -144,6 +144,7 @@ fn check(name: &str, model: &Model, functions: &Functions, seed: u64) -> usize {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn lengths_of_euler_parameters_mean_nothing() {
     let functions = Functions::all();
     let (mut n_models, mut n_functions) = (0, 0);

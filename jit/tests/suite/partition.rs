@@ -75,6 +75,7 @@ fn largest(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn pivoting_finds_nothing_left_on_shipped_models() {
     let mut n_checked = 0;
     for folder in ["../models", "../tests/models"] {
@@ -96,6 +97,7 @@ fn pivoting_finds_nothing_left_on_shipped_models() {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn pivoting_finds_nothing_left_on_random_models() {
     let mut n_checked = 0;
     for seed in 7000..7080 {

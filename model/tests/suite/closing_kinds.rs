@@ -131,6 +131,7 @@ fn closing(kind: &str, start: &Start, rng: &mut ChaCha8Rng) -> String {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn every_kind_closes_a_loop_on_random_frames() {
     for kind in CLOSERS {
         for seed in 0..CHAINS {

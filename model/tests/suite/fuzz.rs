@@ -259,6 +259,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
     #[test]
+    #[ignore = "takes long: `.ci/steps` runs it"]
     fn random_pages_are_read_or_refused(page in crate::support::random_page::page(), table in crate::support::random_page::table()) {
         check_with(&page, &table);
     }
@@ -268,6 +269,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1500))]
 
     #[test]
+    #[ignore = "takes long: `.ci/steps` runs it"]
     fn edited_pages_are_read_or_refused(page in any::<Index>(), edits in prop::collection::vec(edit(), 1..6)) {
         let pages = [crate::support::pages("models"), crate::support::pages("tests/models")].concat();
         let (_, text) = page.get(&pages);
@@ -294,6 +296,7 @@ proptest! {
     }
 
     #[test]
+    #[ignore = "takes long: `.ci/steps` runs it"]
     fn parameters_of_any_value_give_a_start_or_a_message(numerator: i64, exponent in -250..250_i32, which in 0..5_usize) {
         let pages = crate::support::pages("models");
         let (_, text) = pages.iter().find(|(p, _)| p.ends_with("gyroscope-parameters.toml")).expect("a model file");

@@ -193,8 +193,9 @@ fn operating_point(y: &Vec<f64>) -> OperatingPoint<'_, Vec<f64>> {
 }
 
 macro_rules! kinds {
-    ($($name:ident: $kind:literal),* $(,)?) => {
+    ($($(#[$is_long:meta])? $name:ident: $kind:literal),* $(,)?) => {
         $(#[test]
+        $(#[$is_long])?
         fn $name() {
             assert!(KINDS.contains(&$kind));
             turns($kind);
@@ -206,9 +207,13 @@ kinds! {
     bennett_turns: "bennett",
     goldbergs_five_bars_turn: "goldberg-5r",
     myard_turns: "myard",
+    #[ignore = "takes long: `.ci/steps` runs it"]
     line_symmetric_bricard_turns: "line-symmetric",
+    #[ignore = "takes long: `.ci/steps` runs it"]
     plane_symmetric_bricard_turns: "plane-symmetric",
+    #[ignore = "takes long: `.ci/steps` runs it"]
     trihedral_bricard_turns: "trihedral",
+    #[ignore = "takes long: `.ci/steps` runs it"]
     line_symmetric_octahedron_turns: "octahedral-line",
     sarrus_turns: "sarrus",
     planar_linkages_turn: "planar",
@@ -217,6 +222,7 @@ kinds! {
 
 /// What is generated is what the textbook says, rows that depend on each other included.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn what_is_generated_is_proved() {
     for (_, model) in loops("bennett") {
         let module =

@@ -24,6 +24,7 @@ fn refused(seed: u64) -> Option<String> {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn random_pages_are_proved() {
     let half = |parity: u64| move |seed: &u64| seed % 2 == parity;
     let all = |parity| {
@@ -99,6 +100,7 @@ fn pages_have_everything() {
 /// Arithmetic changes how numbers are written and nothing else: all numbers are the same rationals, and what is written
 /// without a parameter is the same number to every engine.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn numbers_written_in_other_ways_are_the_same() {
     let read = |text: &str| {
         let model = gyro_model::read_with("page.toml", text, &mut gyro_pages::load);

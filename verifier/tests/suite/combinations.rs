@@ -88,6 +88,7 @@ fn summary(report: &gyro_verifier::Report) -> String {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn every_parameter_on_every_joint_is_proved_with_and_without_an_input() {
     let (left, right) = KINDS.split_at(KINDS.len() / 2);
     let refused: Vec<String> = std::thread::scope(|scope| {

@@ -370,6 +370,7 @@ fn divisors_that_may_vanish_are_listed() {
 
 /// Each line of words is known to be true or is not proved: that it is not what another mechanism would have, too.
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn words_are_proved_too() {
     let mut accepted = Vec::new();
     for name in ["spinning-top", "cam"] {

@@ -34,6 +34,7 @@ impl Case {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn the_text_is_what_was_proved() {
     let pages = [
         ("models/four-bar.toml", Functions::all(), Precision::F64),

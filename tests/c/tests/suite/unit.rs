@@ -95,16 +95,19 @@ fn check(page: &str) {
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn of_a_loop() {
     check("models/four-bar.toml");
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn with_parameters() {
     check("models/gyroscope-parameters.toml");
 }
 
 #[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
 fn with_inputs_and_outputs() {
     check("examples/arm/arm.toml");
 }
