@@ -24,9 +24,11 @@ pub fn for_each_generated(mut check: impl FnMut(&str, &Engine)) {
     }
 }
 
+/// A mechanism that is compiled once, by whoever asks first.
+type Once = Arc<Mutex<Option<Compiled<f64>>>>;
+
 /// What has been compiled, by model files: a lock for each, so that tests wait only for what they need.
-static COMPILED: LazyLock<Mutex<HashMap<String, Arc<Mutex<Option<Compiled<f64>>>>>>> =
-    LazyLock::new(Mutex::default);
+static COMPILED: LazyLock<Mutex<HashMap<String, Once>>> = LazyLock::new(Mutex::default);
 
 /// The generated mechanism of a model file, with the functions that it names, else those that solvers call.
 ///
