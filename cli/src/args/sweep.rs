@@ -6,9 +6,9 @@ use std::path::PathBuf;
 
 /// Run the scenarios of a study on all cores
 ///
-/// Derives and proves the study's model once, runs every scenario and writes a table with a row for each, quantiles and
-/// plots. A scenario that fails is a row with its error. A sweep that was interrupted goes on with --resume and ends with the
-/// same files. See docs/sweep.md.
+/// Derives and proves the study's model once, runs every scenario and writes a table with a row for each, quantiles
+/// and plots. A scenario that fails is a row with its error. A sweep that was interrupted goes on with --resume and
+/// ends with the same files. See docs/sweep.md.
 #[derive(Debug, Args)]
 #[command(
     args_conflicts_with_subcommands = true,

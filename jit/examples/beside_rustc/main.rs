@@ -140,7 +140,8 @@ fn manifest(root: &Path) -> String {
     ];
     format!(
         "[package]\nname = \"beside-rustc\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n[dependencies]\n{}\
-         gyro-sim = {{ path = {:?}, default-features = false }}\nrand = \"0.10\"\nrand_chacha = \"0.10\"\n\
+         gyro-sim = {{ path = {:?}, default-features = false }}\nrand = \"0.10\"\n\
+         chacha20 = {{ version = \"0.10\", default-features = false, features = [\"rng\"] }}\n\
          [profile.dev]\nopt-level = 1\ndebug = false\nincremental = false\nlto = \"off\"\ncodegen-units = 16\n",
         libraries.concat(),
         root.join("gyro-sim"),
