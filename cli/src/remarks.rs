@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::words::count;
 use gyro_model::{Model, OutputKind, RedundantRow, RowOwner};
-use std::io::Write as _;
+use std::io::{IsTerminal, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Remarks of one kind that are made of a model file.
@@ -38,8 +38,14 @@ pub(crate) fn say(text: &str) -> Result<(), Failure> {
 
 /// Says something on standard error.
 pub(crate) fn warn(words: &str) {
-    // Nobody is left to be warned if standard error is closed.
-    let _ = writeln!(std::io::stderr(), "warning: {words}");
+    line(&format!("warning: {words}"));
+}
+
+/// Writes a line to standard error, on terminals over the line that tells of progress.
+fn line(words: &str) {
+    let over = if std::io::stderr().is_terminal() { "\r\x1b[2K" } else { "" };
+    // Nobody is left to be told if standard error is closed.
+    let _ = writeln!(std::io::stderr(), "{over}{words}");
 }
 
 static IS_QUIET: AtomicBool = AtomicBool::new(false);
@@ -55,11 +61,9 @@ pub(crate) fn is_quiet() -> bool {
 
 /// Says on standard error what is going on.
 pub(crate) fn note(words: &str) {
-    if is_quiet() {
-        return;
+    if !is_quiet() {
+        line(&format!("note: {words}"));
     }
-    // Nobody is left to be told if standard error is closed.
-    let _ = writeln!(std::io::stderr(), "note: {words}");
 }
 
 /// The message about a redundant row: whose it is, what it says, and whose multipliers are not unique without it.

@@ -6,10 +6,8 @@ use crate::child::{Job, Scenarios, packs, whole};
 use gyro_jit::{Compiled, Interpreted, check, simulate};
 use gyro_model::Model;
 use gyro_runner::motion::COLUMNS;
-use gyro_runner::{Approach, Event, Settings, Start};
 use gyro_sim::lanes::f64x8;
 use gyro_sim::{Dual, Scalar};
-use std::io;
 use std::sync::Arc;
 
 /// A mechanism whose scenarios are run in this process. Clones share its code, one for each thread.
@@ -52,13 +50,12 @@ impl InProcess {
             };
         };
         let built = one.clone();
-        let run = move |parameters: &[f64],
-                        plan: (&Settings, &Approach),
-                        start: &Start,
-                        tell: &mut dyn FnMut(Event<'_>) -> io::Result<()>| {
-            simulate(&mut built(parameters), runs, plan, start, tell)
-        };
-        let inner = whole::begin(own, run);
+        let inner = whole::begin(
+            own,
+            Box::new(move |parameters, plan, start, tell| {
+                simulate(&mut built(parameters), runs, plan, start, tell)
+            }),
+        );
         match is_sensitive {
             true => Scenarios::new(job, Sensitive::new(job, inner, one, duals)),
             false => Scenarios::new(job, inner),

@@ -22,55 +22,31 @@ pub fn whole<M: Partition<Scalar: Real> + Clone + 'static, K: MotionBuilder<M> +
 /// What a run is told of: samples, and how far it is.
 type Tell<'a> = &'a mut dyn FnMut(Event<'_>) -> io::Result<()>;
 
-/// Makes a run of a scenario.
-pub(crate) trait Run {
-    /// From its parameters, schedule, method and start.
-    fn run(
-        &self,
-        parameters: &[f64],
-        plan: (&Settings, &Approach),
-        start: &Start,
-        tell: Tell<'_>,
-    ) -> Result<Summary, Failure>;
-}
-
-impl<F> Run for F
-where
-    F: Fn(&[f64], (&Settings, &Approach), &Start, Tell<'_>) -> Result<Summary, Failure>,
-{
-    fn run(
-        &self,
-        parameters: &[f64],
-        plan: (&Settings, &Approach),
-        start: &Start,
-        tell: Tell<'_>,
-    ) -> Result<Summary, Failure> {
-        self(parameters, plan, start, tell)
-    }
-}
+/// Makes a run from a scenario's parameters, schedule, method and start.
+pub(crate) type Run = dyn Fn(&[f64], (&Settings, &Approach), &Start, Tell<'_>) -> Result<Summary, Failure>;
 
 /// Runs by the mechanism that `build` makes of parameters, and the builder beside it.
-pub(super) fn by<M, K>(build: impl Fn(&[f64]) -> (M, K)) -> impl Run
+pub(super) fn by<M, K>(build: impl Fn(&[f64]) -> (M, K) + 'static) -> Box<Run>
 where
     M: Partition<Scalar: Real> + Clone + 'static,
     K: MotionBuilder<M>,
 {
-    move |parameters: &[f64], plan: (&Settings, &Approach), start: &Start, tell: Tell<'_>| {
+    Box::new(move |parameters, plan, start, tell| {
         let (mut mechanism, builder) = build(parameters);
         run_by(&mut mechanism, &builder, plan, start, tell)
-    }
+    })
 }
 
-pub(crate) fn begin(job: &'static Job, run: impl Run) -> impl Runs {
+pub(crate) fn begin(job: &'static Job, run: Box<Run>) -> impl Runs {
     Whole { common: Common::new(job), run }
 }
 
-struct Whole<R> {
+struct Whole {
     common: Common,
-    run: R,
+    run: Box<Run>,
 }
 
-impl<R: Run> Runs for Whole<R> {
+impl Runs for Whole {
     fn run(&mut self, block: &mut Block, from: Outsets<'_>) {
         let common = &mut self.common;
         for row in 0..block.count {
@@ -78,8 +54,8 @@ impl<R: Run> Runs for Whole<R> {
             common.keeper.moved = from.moved.get(row as usize).cloned().unwrap_or_default();
             let outcome = match from.starts.get(row as usize) {
                 Some(Err(words)) => Err(words.clone()),
-                Some(Ok(start)) => scenario(common, &self.run, start.clone()),
-                None => scenario(common, &self.run, common.job.start.clone()),
+                Some(Ok(start)) => scenario(common, &*self.run, start.clone()),
+                None => scenario(common, &*self.run, common.job.start.clone()),
             };
             common.keeper.finish(outcome.is_ok(), &mut block.numbers);
             if let Err(words) = outcome {
@@ -90,7 +66,7 @@ impl<R: Run> Runs for Whole<R> {
 }
 
 /// Runs one; a fault of the program's own is an error of this scenario alone.
-fn scenario(common: &mut Common, run: &dyn Run, start: Start) -> Result<(), String> {
+fn scenario(common: &mut Common, run: &Run, start: Start) -> Result<(), String> {
     let Common { job, keeper, parameters, inputs: varied, .. } = common;
     let mut inputs = job.start.inputs.clone();
     inputs.extend_from_slice(varied);
@@ -115,7 +91,7 @@ fn words(failure: Failure) -> String {
 fn run_kept(
     job: &Job,
     parameters: &[f64],
-    run: &dyn Run,
+    run: &Run,
     start: &Start,
     keeper: &mut Keeper<'_>,
 ) -> Result<(), Failure> {
@@ -125,7 +101,7 @@ fn run_kept(
         }
         Ok(())
     };
-    run.run(parameters, (&job.settings, &job.approach), start, &mut tell).map(|_| ())
+    run(parameters, (&job.settings, &job.approach), start, &mut tell).map(|_| ())
 }
 
 type Samples = (Vec<Sample>, Summary);
@@ -133,7 +109,7 @@ type Samples = (Vec<Sample>, Summary);
 fn run_judged(
     job: &Job,
     (size, is_balanced): (f64, bool),
-    (parameters, run): (&[f64], &dyn Run),
+    (parameters, run): (&[f64], &Run),
     start: &Start,
     keeper: &mut Keeper<'_>,
 ) -> Result<(), Failure> {
@@ -145,7 +121,7 @@ fn run_judged(
             }
             Ok(())
         };
-        let summary = run.run(parameters, (settings, approach), start, &mut tell)?;
+        let summary = run(parameters, (settings, approach), start, &mut tell)?;
         Ok((samples, summary))
     };
     let (samples, summary) = run(&job.settings, &job.approach)?;
