@@ -40,6 +40,6 @@ fn value(model: &Model, parameters: &[f64], number: &Number) -> f64 {
             Computation::Quotient(a, b) => value(a) / value(b),
             Computation::Power(base, exponent) => power(value(base), *exponent),
         },
-        Number::Exact(_) | Number::Input { .. } => model.value(number),
+        Number::Exact(_) | Number::Input { .. } | Number::Formula(_) => model.value(number),
     }
 }

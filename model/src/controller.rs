@@ -1,6 +1,6 @@
 //! Sampled controllers: laws from outputs to inputs, at their own periods.
 
-use crate::{JointCoordinate, JointKind, Model, Number, Output, Rational};
+use crate::{JointCoordinate, JointKind, Model, Number, Output, Rational, Seen};
 
 /// A law that sees numbers of the mechanism at the multiples of its period and holds inputs in between.
 #[derive(Clone, Debug)]
@@ -47,22 +47,6 @@ pub enum Law {
         /// a0, which is not zero, a1 and so on.
         denominator: Vec<Number>,
     },
-}
-
-/// A number of the mechanism that a controller can see.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Seen {
-    /// A number of an output.
-    Output {
-        /// Index into [`crate::Model::outputs`].
-        output: usize,
-        /// Index into the [`crate::OutputKind::columns`] of its kind.
-        number: usize,
-    },
-    /// A joint coordinate, rad or m.
-    Coordinate(JointCoordinate),
-    /// Its rate, rad/s or m/s.
-    Rate(JointCoordinate),
 }
 
 impl Model {

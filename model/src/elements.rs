@@ -2,67 +2,7 @@
 
 use std::slice::from_ref;
 
-use crate::{Motion, Number};
-
-/// One scalar coordinate of a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct JointCoordinate {
-    /// Index into [`crate::Model::joints`].
-    pub joint: usize,
-    /// Index into the joint's [`crate::JointKind::coordinates`].
-    pub coordinate: usize,
-}
-
-/// What is asked of a joint's coordinates, from little to much.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum CoordinateUse {
-    /// Nothing.
-    #[default]
-    None,
-    /// Their rates, by friction and dampers, or that forces act along them.
-    Rate,
-    /// Where they are, by springs and stops, or that an armature turns with them.
-    Value,
-    /// That they are what a coupler or a driver says.
-    Prescribed,
-}
-
-/// What a scalar coordinate of a joint is. With (f, g, h) the joint frames and d from the first joint point to the
-/// second: every angle is continuous over turns where something acts on it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum CoordinateKind {
-    /// From the first body's f to the second's about h: `atan2(g_i·f_j, f_i·f_j)`, rad.
-    Angle,
-    /// Universal: from the first body's f to the second's h about the first's h: `atan2(g_i·h_j, f_i·h_j)`, rad.
-    FirstAngle,
-    /// Universal: from the first body's h to the second's f about the second's h: `atan2(−h_i·g_j, h_i·f_j)`, rad.
-    SecondAngle,
-    /// `h_i·d`, m.
-    Displacement,
-    /// `f_i·d`, m.
-    X,
-    /// `g_i·d`, m.
-    Y,
-}
-
-impl CoordinateKind {
-    /// Whether the coordinate is an angle, rad; a length, m, otherwise.
-    pub fn is_angle(self) -> bool {
-        matches!(self, Self::Angle | Self::FirstAngle | Self::SecondAngle)
-    }
-
-    /// The coordinate's name in the model file and in outputs.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Angle => "angle",
-            Self::FirstAngle => "first_angle",
-            Self::SecondAngle => "second_angle",
-            Self::Displacement => "displacement",
-            Self::X => "x",
-            Self::Y => "y",
-        }
-    }
-}
+use crate::{CoordinateUse, JointCoordinate, Motion, Number};
 
 /// A gear, a belt, a rack: `second = ratio · first + offset` between two joint coordinates, one row
 /// `second − ratio · first − offset`.
@@ -157,8 +97,8 @@ pub enum ForceKind {
         /// N·m or N.
         value: Number,
     },
-    /// Between two points of two bodies: the force `−stiffness (l − free_length) − damping l̇` along the line from the
-    /// first point to the second, on the second body; l the distance, which must not vanish. The spring is
+    /// Between two points of two bodies: the force `−stiffness (l − free_length) − damping l̇ − tension` along the line
+    /// from the first point to the second, on the second body; l the distance, which must not vanish. The spring is
     /// conservative.
     Link {
         /// Index of the first body, and the point in its frame, m.
@@ -171,6 +111,8 @@ pub enum ForceKind {
         damping: Number,
         /// m.
         free_length: Number,
+        /// What it pulls besides, N; a formula of it may name the distance and its rate.
+        tension: Number,
     },
     /// A force at a point of a body and a torque on it. Counted as non-conservative.
     Load {
@@ -217,7 +159,7 @@ impl ForceKind {
                 &[("limit", limit), ("stiffness", stiffness), ("damping", damping), ("softness", softness)],
             ),
             Self::Motor { on, value } => along("motor", (*on, Rate), &[("value", value)]),
-            Self::Link { first, second, stiffness, damping, free_length } => ForceParts {
+            Self::Link { first, second, stiffness, damping, free_length, tension } => ForceParts {
                 word: "link",
                 on: None,
                 numbers: vec![
@@ -226,6 +168,7 @@ impl ForceKind {
                     ("stiffness", from_ref(stiffness)),
                     ("damping", from_ref(damping)),
                     ("free_length", from_ref(free_length)),
+                    ("tension", from_ref(tension)),
                 ],
             },
             Self::Load { body: _, point, force, torque, frame: _ } => ForceParts {
@@ -240,7 +183,7 @@ impl ForceKind {
     pub fn does_work(&self) -> bool {
         match self {
             Self::Spring { .. } => false,
-            Self::Link { damping, .. } => !damping.is_zero(),
+            Self::Link { damping, tension, .. } => !damping.is_zero() || !tension.is_zero(),
             _ => true,
         }
     }

@@ -11,11 +11,11 @@
 mod assemble;
 mod contact;
 mod controller;
+mod coordinate;
 mod diagnostics;
 mod directions;
 mod elements;
 mod event;
-mod formula;
 mod joint_kind;
 pub mod keys;
 mod kinematics;
@@ -35,19 +35,18 @@ mod validate;
 
 pub use assemble::{AssemblyError, JointStart, Move, START_TOLERANCE, Start, StartTolerances};
 pub use contact::Contact;
-pub use controller::{Controller, Law, Seen};
+pub use controller::{Controller, Law};
+pub use coordinate::{CoordinateKind, CoordinateUse, JointCoordinate, Seen};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
-    BodyFrame, CoordinateKind, CoordinateUse, Coupler, Driver, Force, ForceKind, ForceParts, JointCoordinate,
-    LoadFrame, Output, OutputKind, StopSide,
+    BodyFrame, Coupler, Driver, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind, StopSide,
 };
 pub use event::{Direction, Event};
-pub use formula::Formula;
 pub use joint_kind::JointKind;
 pub use kinematics::Kinematics;
 pub use lines::Lines;
 pub use motion::{BodyMotion, Motion, Prescribed};
-pub use number::{Computation, Number, Rational, parse_decimal, to_f64};
+pub use number::{Computation, Formula, Number, Operation, Rational, parse_decimal, to_f64};
 pub use parse::{column, is_keyword, meant, read, read_with};
 pub use redundancy::{Analysis, analyse};
 pub use shape::{Shape, ShapeKind};

@@ -1,8 +1,10 @@
 //! Numbers of the model file: exact rationals, references to parameters, or what is computed from these.
 
 mod computation;
+mod formula;
 
 pub use computation::Computation;
+pub use formula::{Formula, Operation};
 
 use std::sync::Arc;
 
@@ -33,12 +35,22 @@ pub enum Number {
     },
     /// Computed from parameters, of which at least one occurs in it, and exact numbers.
     Computed(Arc<Computation>),
+    /// A formula of what moves, of time or of inputs. Only forces have such numbers.
+    Formula(Arc<Formula>),
 }
 
 impl Number {
     /// An integer.
     pub fn integer(value: i64) -> Self {
         Self::Exact(Rational::from_integer(BigInt::from(value)))
+    }
+
+    /// The formula, if it is one.
+    pub fn formula(&self) -> Option<&Formula> {
+        match self {
+            Self::Formula(formula) => Some(formula),
+            _ => None,
+        }
     }
 
     /// Whether the number is folded and exactly zero.

@@ -1,6 +1,6 @@
 //! All numbers of a model.
 
-use crate::{Model, Motion, Number, Shape, ShapeKind};
+use crate::{Formula, Model, Motion, Number, Shape, ShapeKind};
 
 impl Model {
     /// Every number of the model file that stands in the model, those of the start included.
@@ -32,7 +32,10 @@ impl Model {
         self.forces
             .iter()
             .flat_map(|force| force.kind.parts().numbers)
-            .for_each(|(_, of)| numbers.extend(of));
+            .for_each(|(_, of)| {
+                numbers.extend(of);
+                numbers.extend(of.iter().filter_map(Number::formula).flat_map(Formula::numbers));
+            });
         for frame in self.outputs.iter().filter_map(|output| output.kind.frame()) {
             numbers.extend(frame.point.iter().chain(frame.orientation.iter().flatten()));
         }

@@ -2,7 +2,7 @@
 
 use crate::redundancy::analyse_with_start;
 use crate::{
-    BodyMotion, CoordinateKind, CoordinateUse, JointCoordinate, JointKind, Lines, Model, Motion, Number,
+    BodyMotion, CoordinateKind, CoordinateUse, Formula, JointCoordinate, JointKind, Lines, Model, Motion, Number,
     Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start, Support, Tree, to_f64,
 };
 use std::ops::Range;
@@ -142,6 +142,7 @@ impl Model {
     /// What forces, couplers and drivers ask of a joint's coordinates.
     pub fn use_of_coordinates(&self, joint: usize) -> CoordinateUse {
         let forces = self.forces.iter().filter_map(|force| force.kind.parts().on);
+        let forces = forces.chain(self.uses_of_formulas());
         let couplers = self.couplers.iter().flat_map(|coupler| [coupler.first, coupler.second]);
         let prescribed = couplers.chain(self.drivers.iter().map(|driver| driver.coordinate));
         let stopped = self.contacts.iter().map(|contact| (contact.on, CoordinateUse::Value));
@@ -156,6 +157,13 @@ impl Model {
 
     fn coordinate_unit(&self, coordinate: JointCoordinate) -> RowUnit {
         if self.coordinate_kind(coordinate).is_angle() { RowUnit::Pure } else { RowUnit::Length }
+    }
+
+    /// What formulas of forces ask of joint coordinates.
+    fn uses_of_formulas(&self) -> impl Iterator<Item = (JointCoordinate, CoordinateUse)> {
+        let numbers = self.forces.iter().flat_map(|force| force.kind.parts().numbers);
+        let formulas = numbers.flat_map(|(_, numbers)| numbers).filter_map(Number::formula);
+        formulas.flat_map(Formula::uses)
     }
 
     /// The rows of one joint, coupler, driver or body among [`Model::rows`].
@@ -173,6 +181,7 @@ impl Model {
     pub fn turn_references(&self) -> Vec<JointCoordinate> {
         let mut used = Vec::new();
         let forces = self.forces.iter().filter_map(|force| force.kind.parts().on);
+        let forces = forces.chain(self.uses_of_formulas());
         used.extend(forces.filter(|(_, of)| *of == CoordinateUse::Value).map(|(on, _)| on));
         used.extend(self.contacts.iter().map(|contact| contact.on));
         used.extend(self.couplers.iter().flat_map(|c| [c.first, c.second]));

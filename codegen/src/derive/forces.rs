@@ -1,6 +1,8 @@
 //! Forces besides gravity: what each does to the bodies, what energy it stores, what power it has.
 
 use crate::derive::joint_coordinate::{self, Load, relative_spin};
+use crate::derive::laws::{self, OfBodies, Readings};
+use crate::derive::points::PointOfBody;
 use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::vector::{Vec3, ZERO3};
@@ -30,27 +32,6 @@ pub struct Along {
     pub potential: Option<ExprId>,
 }
 
-/// What forces along joint coordinates read.
-pub trait Readings {
-    /// The joint coordinate; of an angle its continuous value.
-    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId;
-    /// Its rate.
-    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId;
-}
-
-/// Joint coordinates in terms of maximal ones.
-struct OfBodies;
-
-impl Readings for OfBodies {
-    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId {
-        joint_coordinate::value(system, on)
-    }
-
-    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId {
-        joint_coordinate::rate(system, on)
-    }
-}
-
 /// All forces that act along joint coordinates.
 pub fn along_coordinates(system: &mut System, readings: &impl Readings) -> Vec<Along> {
     let (joints, forces) = (&system.model.joints, &system.model.forces);
@@ -74,27 +55,30 @@ fn along(system: &mut System, readings: &impl Readings, force: &Force) -> Option
         }
         ForceKind::Damper { on, damping } => Some(damper(system, readings, *on, damping)),
         ForceKind::Coulomb { on, level, rate } => {
-            let (speed, [level, rate]) = (readings.rate(system, *on), numbers(system, [level, rate]));
+            let (speed, rate) = (readings.rate(system, *on), system.number(rate));
+            let level = laws::strength(system, readings, level);
             let ratio = system.graph.div(speed, rate);
             let sliding = system.graph.tanh(ratio);
             let drag = system.graph.mul(level, sliding);
             Some(Along { on: *on, force: system.graph.neg(drag), potential: None })
         }
         ForceKind::Stop { on, limit, side, stiffness, damping, softness } => {
-            let numbers = numbers(system, [limit, stiffness, damping, softness]);
+            let [limit, stiffness, softness] = numbers(system, [limit, stiffness, softness]);
+            let damping = laws::strength(system, readings, damping);
+            let numbers = [limit, stiffness, damping, softness];
             let (x, rate) = (readings.value(system, *on), readings.rate(system, *on));
             let force = stop(&mut system.graph, *side, (x, rate), numbers);
             Some(Along { on: *on, force, potential: None })
         }
         ForceKind::Motor { on, value } => {
-            Some(Along { on: *on, force: system.number(value), potential: None })
+            Some(Along { on: *on, force: laws::strength(system, readings, value), potential: None })
         }
         ForceKind::Link { .. } | ForceKind::Load { .. } => None,
     }
 }
 
 fn damper(system: &mut System, readings: &impl Readings, on: JointCoordinate, damping: &Number) -> Along {
-    let (speed, damping) = (readings.rate(system, on), system.number(damping));
+    let (speed, damping) = (readings.rate(system, on), laws::strength(system, readings, damping));
     let drag = system.graph.mul(damping, speed);
     Along { on, force: system.graph.neg(drag), potential: None }
 }
@@ -170,7 +154,7 @@ impl Forces {
         self.power = graph.sub(self.power, loss);
         self.potential = graph.add(self.potential, stored);
         for (end, force) in ends.iter().zip([on_first, on_second]) {
-            let load = end.load(system, &force);
+            let load = load_at(system, end, &force);
             self.push(system, end.body, &load);
         }
     }
@@ -178,7 +162,8 @@ impl Forces {
     fn add_load(&mut self, system: &mut System, kind: &ForceKind) {
         let ForceKind::Load { body, point, force, torque, frame } = kind else { return };
         let end = PointOfBody::new(system, *body, point);
-        let (given_force, given_torque) = (system.numbers(force), system.numbers(torque));
+        let [given_force, given_torque] =
+            [force, torque].map(|v| v.each_ref().map(|x| laws::strength(system, &OfBodies, x)));
         let pose = system.poses[*body];
         let graph = &mut system.graph;
         let (force, torque) = match frame {
@@ -188,7 +173,7 @@ impl Forces {
         let (pushing, turning) = (graph.dot(&force, &end.velocity), graph.dot(&torque, &pose.w));
         let power = graph.add(pushing, turning);
         self.power = graph.add(self.power, power);
-        let load = end.load(system, &force);
+        let load = load_at(system, end, &force);
         let torque = system.graph.add_vec(&load.torque, &torque);
         self.push(system, *body, &Load { force: load.force, torque });
     }
@@ -227,9 +212,11 @@ struct Pull {
 
 impl Pull {
     fn of(system: &mut System, kind: &ForceKind) -> Option<Self> {
-        let ForceKind::Link { first, second, stiffness, damping, free_length } = kind else { return None };
+        let ForceKind::Link { first, second, stiffness, damping, free_length, tension } = kind else {
+            return None;
+        };
         let ends = [first, second].map(|(body, point)| PointOfBody::new(system, *body, point));
-        let [stiffness, damping, free] = numbers(system, [stiffness, damping, free_length]);
+        let [stiffness, free] = numbers(system, [stiffness, free_length]);
         let graph = &mut system.graph;
         let (d, d_dot) = (
             graph.sub_vec(&ends[1].position, &ends[0].position),
@@ -240,8 +227,12 @@ impl Pull {
         let inverse = graph.recip(length);
         let unit = graph.scale_vec(inverse, &d);
         let rate = graph.dot(&unit, &d_dot);
+        let line = laws::Line { length, rate };
+        let [damping, tension] = [damping, tension].map(|number| line.strength(system, number));
+        let graph = &mut system.graph;
         let (elastic, stored) = spring(graph, stiffness, length, free);
         let drag = graph.mul(damping, rate);
+        let drag = graph.add(drag, tension);
         let force = graph.sub(elastic, drag);
         Some(Self { ends, unit, length, rate, drag, stored, force })
     }
@@ -274,33 +265,11 @@ impl Load {
     }
 }
 
-/// A point of a body.
-pub struct PointOfBody {
-    pub body: usize,
-    /// In the body's frame.
-    point: Vec3,
-    /// Global.
-    pub position: Vec3,
-    pub velocity: Vec3,
-}
-
-impl PointOfBody {
-    pub fn new(system: &mut System, body: usize, point: &[Number; 3]) -> Self {
-        let point = system.numbers(point);
-        let pose = system.poses[body];
-        let graph = &mut system.graph;
-        let (arm, turning) = (graph.mat_vec(&pose.a, &point), graph.cross(&pose.w, &point));
-        let turning = graph.mat_vec(&pose.a, &turning);
-        let (position, velocity) = (graph.add_vec(&pose.r, &arm), graph.add_vec(&pose.s, &turning));
-        Self { body, point, position, velocity }
-    }
-
-    /// A force at the point, global frame.
-    fn load(&self, system: &mut System, force: &Vec3) -> Load {
-        let a = system.poses[self.body].a;
-        let in_body = system.graph.transposed_vec(&a, force);
-        Load { force: *force, torque: system.graph.cross(&self.point, &in_body) }
-    }
+/// A force at a point, global frame.
+fn load_at(system: &mut System, end: &PointOfBody, force: &Vec3) -> Load {
+    let a = system.poses[end.body].a;
+    let in_body = system.graph.transposed_vec(&a, force);
+    Load { force: *force, torque: system.graph.cross(&end.point, &in_body) }
 }
 
 /// `−stiffness (x − free)`, and the energy stored: half the stiffness times the square.

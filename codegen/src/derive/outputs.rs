@@ -1,15 +1,16 @@
 //! The outputs that the model file asks for, in terms of the state, of [`Symbol::Acceleration`] and of the multipliers.
 
 use crate::derive::dynamics::Dynamics;
-use crate::derive::forces::{self, PointOfBody};
+use crate::derive::forces;
 use crate::derive::joint_coordinate::Load;
 use crate::derive::kinematics::Kinematics;
+use crate::derive::points::{self, by_axes};
 use crate::derive::system::System;
 use crate::expr::differentiate::Derivative;
 use crate::expr::differentiate::Direction;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
-use crate::expr::vector::{Vec3, Vec4, ZERO3};
+use crate::expr::vector::{Vec3, ZERO3};
 use gyro_model::{BodyFrame, OutputKind, RowOwner};
 use std::array::from_fn;
 
@@ -37,13 +38,6 @@ pub fn drivers_power(system: &mut System, sources: &Sources) -> ExprId {
     power
 }
 
-/// Velocity of a frame's origin, global, and the frame's w'.
-pub fn velocity(system: &mut System, frame: &BodyFrame) -> Vec<ExprId> {
-    let velocity = PointOfBody::new(system, frame.body, &frame.point).velocity;
-    let w = by_axes(system, frame, system.poses[frame.body].w);
-    velocity.into_iter().chain(w).collect()
-}
-
 /// Acceleration of a frame's origin, global, and the frame's ẇ'.
 pub fn acceleration(system: &mut System, frame: &BodyFrame) -> Vec<ExprId> {
     let (linear, angular) = linear_and_angular(system, frame);
@@ -51,31 +45,10 @@ pub fn acceleration(system: &mut System, frame: &BodyFrame) -> Vec<ExprId> {
     linear.into_iter().chain(angular).collect()
 }
 
-/// Euler parameters of a frame in its body's; `None` where it has the body's axes.
-fn orientation(system: &mut System, frame: &BodyFrame) -> Option<Vec4> {
-    let parameters = system.numbers(frame.orientation.as_ref()?);
-    Some(system.graph.normalise(&parameters))
-}
-
-/// A vector in a body's frame, by the axes of a frame that is fixed there.
-fn by_axes(system: &mut System, frame: &BodyFrame, vector: Vec3) -> Vec3 {
-    let Some(p) = orientation(system, frame) else { return vector };
-    let axes = system.graph.rotation(&p);
-    system.graph.transposed_vec(&axes, &vector)
-}
-
 fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<ExprId> {
     match kind {
-        OutputKind::Pose(frame) => {
-            let position = PointOfBody::new(system, frame.body, &frame.point).position;
-            let p = system.poses[frame.body].p;
-            let p = match orientation(system, frame) {
-                Some(own) => system.graph.compose(&p, &own),
-                None => p,
-            };
-            position.into_iter().chain(p).collect()
-        }
-        OutputKind::Velocity(frame) => velocity(system, frame),
+        OutputKind::Pose(frame) => points::pose(system, frame),
+        OutputKind::Velocity(frame) => points::velocity(system, frame),
         OutputKind::Acceleration(frame) => acceleration(system, frame),
         OutputKind::Inertial(frame) => {
             let (linear, _) = linear_and_angular(system, frame);

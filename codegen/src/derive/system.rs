@@ -104,6 +104,7 @@ impl<'m> System<'m> {
                 if *negated { self.graph.neg(symbol) } else { symbol }
             }
             Number::Computed(computation) => self.computed(computation),
+            Number::Formula(_) => unreachable!("formulas are strengths, which `laws` reads"),
         }
     }
 
@@ -129,7 +130,7 @@ impl<'m> System<'m> {
     }
 
     /// A power by repeated squaring.
-    fn power(&mut self, base: ExprId, exponent: u32) -> ExprId {
+    pub fn power(&mut self, base: ExprId, exponent: u32) -> ExprId {
         match exponent {
             0 => self.graph.integer(1),
             1 => base,

@@ -2,8 +2,9 @@
 
 use super::layout::{Layout, Place};
 use super::whole_angles::WholeAngles;
-use crate::derive::forces::{self, Readings};
+use crate::derive::forces;
 use crate::derive::joint_coordinate::{self, Load};
+use crate::derive::laws::Readings;
 use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;

@@ -66,17 +66,19 @@ pub static FORCE: Table = Table::new(
     ),
     kind(
         "link",
-        "−`stiffness` · (l − `free_length`) − `damping` · l̇ between two points at the distance l",
+        "−`stiffness` · (l − `free_length`) − `damping` · l̇ − `tension` between two points at the distance l",
         &[
             table("first", &FORCE_END, "a table of `body` and `point`").required(),
             table("second", &FORCE_END, "likewise").required(),
-            number("stiffness", "N/m", "it or `damping` must be there")
-                .eg("stiffness = ..., in N/m, or damping = ..., in N.s/m")
+            number("stiffness", "N/m", "it, `damping` or `tension` must be there")
+                .eg("stiffness = ..., in N/m, damping = ..., in N.s/m, or tension = ..., in N")
                 .or("0"),
             strength("damping", "N.s/m", "").not_negative(DRIVES).or("0"),
             number("free_length", "m", "")
                 .not_negative("lengths cannot be negative")
                 .or("required with `stiffness`"),
+            strength("tension", "N", "what it pulls besides: a formula may name `length` and `length rate`")
+                .or("0"),
         ],
     ),
     kind(

@@ -66,7 +66,7 @@ impl Neg for Number {
             Self::Exact(value) => Self::Exact(-value),
             Self::Parameter { index, negated } => Self::Parameter { index, negated: !negated },
             Self::Input { index, negated } => Self::Input { index, negated: !negated },
-            computed @ Self::Computed(_) => Self::integer(-1) * computed,
+            computed @ (Self::Computed(_) | Self::Formula(_)) => Self::integer(-1) * computed,
         }
     }
 }
@@ -79,7 +79,11 @@ impl Mul for Number {
             (Self::Exact(a), Self::Exact(b)) => Self::Exact(a * b),
             (zero, _) | (_, zero) if zero.is_zero() => Self::integer(0),
             (one, x) | (x, one) if one.is_one() => x,
-            (minus, x) | (x, minus) if minus == Self::integer(-1) && !matches!(x, Self::Computed(_)) => -x,
+            (minus, x) | (x, minus)
+                if minus == Self::integer(-1) && !matches!(x, Self::Computed(_) | Self::Formula(_)) =>
+            {
+                -x
+            }
             (a, b) => Computation::Product(a, b).into(),
         }
     }
@@ -125,6 +129,7 @@ impl Number {
     /// The number itself, or what it is computed from: exact numbers, parameters and inputs.
     pub fn leaves(&self) -> Vec<&Self> {
         match self {
+            Self::Formula(formula) => formula.numbers().flat_map(Self::leaves).collect(),
             Self::Computed(computation) => {
                 computation.operands().into_iter().flat_map(Self::leaves).collect()
             }
@@ -139,13 +144,17 @@ impl Number {
 
     /// The numbers that it divides by: none of them may be zero.
     pub fn divisors(&self) -> Vec<&Self> {
-        let Self::Computed(computation) = self else { return Vec::new() };
+        let computation = match self {
+            Self::Computed(computation) => computation,
+            Self::Formula(formula) => return formula.numbers().flat_map(Self::divisors).collect(),
+            _ => return Vec::new(),
+        };
         let own = if let Computation::Quotient(_, divisor) = &**computation { Some(divisor) } else { None };
         let inner = computation.operands().into_iter().flat_map(Self::divisors);
         own.into_iter().chain(inner).collect()
     }
 
-    /// The value, given those of parameters and inputs; `None` where it divides by zero.
+    /// The value, given those of parameters and inputs; `None` where it divides by zero, and of formulas.
     pub(crate) fn evaluate(
         &self,
         parameter: &dyn Fn(usize) -> Rational,
@@ -157,6 +166,7 @@ impl Number {
             Self::Exact(value) => value.clone(),
             Self::Parameter { index, negated } => signed(parameter(*index), *negated),
             Self::Input { index, negated } => signed(input(*index), *negated),
+            Self::Formula(_) => return None,
             Self::Computed(computation) => match &**computation {
                 Computation::Sum(a, b) => value(a)? + value(b)?,
                 Computation::Product(a, b) => value(a)? * value(b)?,

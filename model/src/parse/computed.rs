@@ -30,10 +30,10 @@ pub(super) struct Meaning<'m> {
 }
 
 /// Largest exponent of a power.
-const MOST_EXPONENT: i32 = 100;
+pub(super) const MOST_EXPONENT: i32 = 100;
 
 /// Numbers and names that an expression may have with those of derived parameters in it, powers counted as products.
-const MOST_WEIGHT: u64 = 256;
+pub(super) const MOST_WEIGHT: u64 = 256;
 
 /// Bits of an exact number.
 const MOST_BITS: u64 = 20_000;
@@ -55,7 +55,6 @@ impl Meaning<'_> {
                 Number::Exact(parse_decimal(text).filter(in_range).ok_or_else(|| out_of_range(term))?)
             }
             Kind::Name(name) => self.name(term, name)?,
-            Kind::Root(a) => self.root(a)?,
             Kind::Negative(a) => -self.of(a)?,
             Kind::Sum(a, b) => self.of(a)? + self.of(b)?,
             Kind::Difference(a, b) => self.of(a)? - self.of(b)?,
@@ -65,7 +64,14 @@ impl Meaning<'_> {
                 self.not_zero(&divisor, b)?;
                 a.over(divisor).ok_or_else(|| division_by_zero(b, false))?
             }
-            Kind::Power(a, exponent) => self.power(term, a, exponent)?,
+            Kind::Power(a, exponent) => self.power(a, exponent)?,
+            Kind::Call(name, operands) => match (name.as_str(), operands.as_slice()) {
+                ("sqrt", [a]) => self.root(a)?,
+                _ => return Err(not_of_numbers(term, name)),
+            },
+            Kind::Greater(..) | Kind::AtLeast(..) | Kind::And(..) | Kind::Or(..) => {
+                return Err(not_of_numbers(term, "if"));
+            }
             Kind::In(a, unit) => self.of(a)? * Number::Exact(size(*unit)),
         };
         let is_fit = |value: &Rational| value.numer().bits().max(value.denom().bits()) <= MOST_BITS;
@@ -84,14 +90,9 @@ impl Meaning<'_> {
         }
     }
 
-    fn power(&self, term: &Term, base: &Term, exponent: &str) -> Result<Number, Fault> {
+    fn power(&self, base: &Term, exponent: &Term) -> Result<Number, Fault> {
         let number = self.of(base)?;
-        let exponent = exponent.parse().ok().filter(|n: &i32| n.abs() <= MOST_EXPONENT);
-        let Some(exponent) = exponent else {
-            let message = "the exponent of a power is too large".to_owned();
-            let help = format!("write a whole number from -{MOST_EXPONENT} to {MOST_EXPONENT}");
-            return Err(fault(term, message, "this power", help));
-        };
+        let exponent = whole_exponent(exponent)?;
         if exponent < 0 {
             self.not_zero(&number, base)?;
         }
@@ -128,6 +129,26 @@ impl Meaning<'_> {
         let value = |index: usize| self.values.get(index).cloned().unwrap_or_default();
         number.evaluate(&value, &|_| Rational::zero())
     }
+}
+
+/// The exponent of a power of numbers.
+fn whole_exponent(exponent: &Term) -> Result<i32, Fault> {
+    let wrong = |message: &str, help: String| fault(exponent, message.to_owned(), "this exponent", help);
+    let Some(whole) = exponent.whole() else {
+        let help = "write a whole number as the exponent; sqrt(...) is the square root of a number".to_owned();
+        return Err(wrong("the exponent of a power must be a whole number", help));
+    };
+    if whole.abs() > MOST_EXPONENT {
+        let help = format!("write a whole number from -{MOST_EXPONENT} to {MOST_EXPONENT}");
+        return Err(wrong("the exponent of a power is too large", help));
+    }
+    Ok(whole)
+}
+
+/// The fault of a function, or a comparison, where a number must stand.
+fn not_of_numbers(term: &Term, name: &str) -> Fault {
+    let help = "write the value: sqrt is the only function of a number. Strengths of forces may be formulas".to_owned();
+    fault(term, format!("`{name}` may stand in formulas of what moves only"), "in place of a number", help)
 }
 
 fn fault(term: &Term, message: String, label: &str, help: String) -> Fault {
@@ -200,9 +221,7 @@ pub(super) fn syntax(text: &str, at: usize, is_known: &dyn Fn(&str) -> bool) -> 
         }
         None if text.matches('(').count() > text.matches(')').count() => "close the parenthesis".to_owned(),
         None => "write a number, a name or a parenthesis after the last operator".to_owned(),
-        Some('(') if is_name && !is_known(caller) => {
-            format!("the only function is sqrt: write the value of `{caller}(...)`")
-        }
+        Some('(') if is_name && !is_known(caller) => format!("write {caller}(...) without a blank"),
         Some('(') => "write * before the parenthesis".to_owned(),
         Some(')') => "remove the parenthesis, or open it".to_owned(),
         Some('*') if before.ends_with('*') => "write ^ for a power".to_owned(),
@@ -210,16 +229,14 @@ pub(super) fn syntax(text: &str, at: usize, is_known: &dyn Fn(&str) -> bool) -> 
         Some('÷') => "write /".to_owned(),
         Some(',') => "write a decimal point".to_owned(),
         Some('^') => "write parentheses: of two powers it is not clear which is meant".to_owned(),
-        _ if before.ends_with('^') || before.contains('^') && rest.starts_with('.') => {
-            "write a whole number as the exponent; sqrt(...) is the square root of a number".to_owned()
-        }
+        Some('=') => "write if(a > b, ...): what moves is equal to something at instants only".to_owned(),
         Some(_) if !word.is_empty() && !before.is_empty() => {
             format!(
                 "write * before `{word}`; the units are {}",
                 names::list(&expression::UNITS.map(|(name, _)| name))
             )
         }
-        Some(_) => "write numbers, names of parameters, pi, sqrt(...), + - * / ^ and parentheses".to_owned(),
+        Some(_) => "write numbers, names, pi, functions such as sqrt(...), + - * / ^ and parentheses".to_owned(),
     };
     let label = if rest.is_empty() { "breaks off" } else { "cannot go on here" };
     let length = if word.is_empty() { rest.chars().next().map_or(0, char::len_utf8) } else { word.len() };

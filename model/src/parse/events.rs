@@ -1,13 +1,14 @@
 //! Events.
 
-use super::formulas::Named;
-use super::numbers::{named, wrong_within};
+use super::formulas;
+use super::laws::{self, Inputs};
+use super::numbers::wrong_within;
 use super::reader::Reader;
 use super::section::{Item, Section};
 use super::seen::{self, Known};
 use super::tables;
 use crate::validate::Owner;
-use crate::{Direction, Event, Formula, Number, Output};
+use crate::{Direction, Event, Formula, Output, Seen};
 
 /// Reads all events.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, outputs: &[Output]) -> Vec<Event> {
@@ -22,10 +23,10 @@ fn event(reader: &mut Reader<'_>, section: &Section<'_>, known: &Known, name: St
         let word = item.text(reader)?;
         formula(reader, item, word, known)
     });
-    let of = of.unwrap_or(Formula::Number(Number::integer(0)));
+    let of = of.unwrap_or_else(|| Formula::seen("t", Seen::Time));
     let of = match minus {
         None => of,
-        Some(minus) => Formula::Difference(Box::new([of, minus])),
+        Some(minus) => of.minus(&minus),
     };
     Event {
         name,
@@ -42,19 +43,12 @@ fn event(reader: &mut Reader<'_>, section: &Section<'_>, known: &Known, name: St
 
 /// A column, or a formula of columns and parameters.
 fn formula(reader: &mut Reader<'_>, item: Item<'_>, text: &str, known: &Known) -> Option<Formula> {
-    let is_name = |c: char| c.is_alphanumeric() || "_.- ".contains(c);
-    let is_number = text.starts_with(|c: char| c.is_ascii_digit());
-    let found = {
-        let names: Vec<String> = reader.parameters.iter().map(|name| name.to_string()).collect();
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let parameter = |name: &str| named(reader, name);
-        Named { columns: known, parameter: &parameter, parameters: &names }.formula(text)
-    };
+    let found = laws::with_names(reader, known, Inputs::Unknown, &formulas::any, |named| named.varying(text));
     match found {
         Ok(formula) => Some(formula),
         // Of a single name it can be said what is meant.
-        Err(_) if text.chars().all(is_name) && !is_number && !text.contains(" - ") => {
-            seen::named(reader, item, text, known).map(Formula::Seen)
+        Err(_) if laws::is_name(text) => {
+            seen::named(reader, item, text, known).map(|seen| Formula::seen(text, seen))
         }
         Err(fault) => {
             wrong_within(reader, item, text, fault);

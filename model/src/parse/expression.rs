@@ -1,4 +1,5 @@
-//! The grammar of expressions: arithmetic in a string, such as `"m * L^2 / 12"` or `"30 deg"`.
+//! The grammar of expressions: arithmetic in a string, such as `"m * L^2 / 12"`, `"30 deg"` or, of what moves,
+//! `"if(depth > 0, k * depth^1.5, 0)"`.
 //!
 //! Powers bind before signs, signs before products, products before sums; a unit multiplies all that stands before it
 //! in its product, so that `1/2 deg` is half a degree.
@@ -8,7 +9,7 @@ use std::ops::Range;
 use winnow::ascii::{digit0, digit1, multispace0};
 use winnow::combinator::{alt, cut_err, delimited, eof, fail, not, opt, preceded, repeat, terminated};
 use winnow::prelude::*;
-use winnow::stream::{LocatingSlice, Stateful};
+use winnow::stream::LocatingSlice;
 use winnow::token::{any, one_of, take_while};
 
 /// A part of an expression, and where it stands in the string, in bytes.
@@ -22,16 +23,24 @@ pub(super) struct Term {
 pub(super) enum Kind {
     /// A decimal, as it is written.
     Number(String),
-    /// A parameter, or π.
+    /// A parameter, π, or what moves.
     Name(String),
-    Root(Box<Term>),
+    /// A function of some operands.
+    Call(String, Vec<Term>),
     Negative(Box<Term>),
     Sum(Box<Term>, Box<Term>),
     Difference(Box<Term>, Box<Term>),
     Product(Box<Term>, Box<Term>),
     Quotient(Box<Term>, Box<Term>),
-    /// The exponent as it is written.
-    Power(Box<Term>, String),
+    Power(Box<Term>, Box<Term>),
+    /// A condition: the first is greater than the second.
+    Greater(Box<Term>, Box<Term>),
+    /// A condition: the first is not less than the second.
+    AtLeast(Box<Term>, Box<Term>),
+    /// Two conditions of which both must hold.
+    And(Box<Term>, Box<Term>),
+    /// Two conditions of which at least one must hold.
+    Or(Box<Term>, Box<Term>),
     In(Box<Term>, Unit),
 }
 
@@ -64,16 +73,7 @@ pub(super) const MOST_CHARACTERS: usize = 400;
 /// Parentheses within parentheses.
 const DEEPEST: usize = 40;
 
-type Input<'s> = Stateful<LocatingSlice<&'s str>, Names>;
-
-/// What names look like.
-#[derive(Clone, Copy, Debug)]
-enum Names {
-    /// Letters, digits and underscores.
-    Parameters,
-    /// Those of columns of a run's table too: with dots in them, and the word `rate` after a blank.
-    Columns,
-}
+type Input<'s> = LocatingSlice<&'s str>;
 
 impl Unit {
     pub(super) fn is_rate(self) -> bool {
@@ -102,10 +102,26 @@ impl Term {
     fn parts(&self) -> Vec<&Self> {
         match &self.kind {
             Kind::Number(_) | Kind::Name(_) => Vec::new(),
-            Kind::Root(a) | Kind::Negative(a) | Kind::Power(a, _) | Kind::In(a, _) => vec![a],
-            Kind::Sum(a, b) | Kind::Difference(a, b) | Kind::Product(a, b) | Kind::Quotient(a, b) => {
-                vec![a, b]
-            }
+            Kind::Call(_, operands) => operands.iter().collect(),
+            Kind::Negative(a) | Kind::In(a, _) => vec![a],
+            Kind::Sum(a, b)
+            | Kind::Difference(a, b)
+            | Kind::Product(a, b)
+            | Kind::Quotient(a, b)
+            | Kind::Power(a, b)
+            | Kind::Greater(a, b)
+            | Kind::AtLeast(a, b)
+            | Kind::And(a, b)
+            | Kind::Or(a, b) => vec![a, b],
+        }
+    }
+
+    /// The whole number that is written there, with its sign.
+    pub(super) fn whole(&self) -> Option<i32> {
+        match &self.kind {
+            Kind::Number(text) if text.bytes().all(|b| b.is_ascii_digit()) => text.parse().ok(),
+            Kind::Negative(a) => a.whole().map(|n| -n),
+            _ => None,
         }
     }
 }
@@ -115,18 +131,6 @@ impl Term {
 /// # Errors
 /// Where in the text it cannot go on.
 pub(super) fn parse(text: &str) -> Result<Term, usize> {
-    parse_with(text, Names::Parameters)
-}
-
-/// The same with names of columns.
-///
-/// # Errors
-/// As [`parse`].
-pub(super) fn parse_formula(text: &str) -> Result<Term, usize> {
-    parse_with(text, Names::Columns)
-}
-
-fn parse_with(text: &str, state: Names) -> Result<Term, usize> {
     let mut depth = 0_usize;
     for (at, c) in text.char_indices() {
         depth = if c == '(' {
@@ -140,8 +144,44 @@ fn parse_with(text: &str, state: Names) -> Result<Term, usize> {
             return Err(at);
         }
     }
-    let input = Stateful { input: LocatingSlice::new(text), state };
-    delimited(multispace0, sum, eof).parse(input).map_err(|error| error.offset())
+    delimited(multispace0, any_term, eof).parse(LocatingSlice::new(text)).map_err(|error| error.offset())
+}
+
+/// A number, or conditions joined by `or`.
+fn any_term(input: &mut Input<'_>) -> ModalResult<Term> {
+    let first = both(input)?;
+    let further = (keyword("or").value('|'), cut_err(both));
+    further_terms(input, first, further, |_, a, b| Kind::Or(a, b))
+}
+
+/// A number, or conditions joined by `and`.
+fn both(input: &mut Input<'_>) -> ModalResult<Term> {
+    let first = comparison(input)?;
+    let further = (keyword("and").value('&'), cut_err(comparison));
+    further_terms(input, first, further, |_, a, b| Kind::And(a, b))
+}
+
+/// A number, or two that are compared.
+fn comparison(input: &mut Input<'_>) -> ModalResult<Term> {
+    let a = sum(input)?;
+    let Some(operator) = opt(word(alt((">=", "<=", ">", "<")))).parse_next(input)? else { return Ok(a) };
+    let b = cut_err(sum).parse_next(input)?;
+    let span = a.span.start..b.span.end;
+    let (a, b) = (Box::new(a), Box::new(b));
+    let kind = match operator {
+        ">" => Kind::Greater(a, b),
+        "<" => Kind::Greater(b, a),
+        ">=" => Kind::AtLeast(a, b),
+        _ => Kind::AtLeast(b, a),
+    };
+    Ok(Term { kind, span })
+}
+
+/// A word of the grammar.
+fn keyword<'s>(
+    text: &'static str,
+) -> impl Parser<Input<'s>, &'s str, winnow::error::ErrMode<winnow::error::ContextError>> {
+    word(terminated(text, not(letter)))
 }
 
 fn sum(input: &mut Input<'_>) -> ModalResult<Term> {
@@ -211,22 +251,47 @@ fn signed(input: &mut Input<'_>) -> ModalResult<Term> {
 
 fn power(input: &mut Input<'_>) -> ModalResult<Term> {
     let base = primary(input)?;
-    let whole = || (opt('-'), digit1).take();
-    let exponent = word(alt((whole(), delimited('(', whole(), ')'))).with_span());
-    let Some((exponent, at)) = opt(preceded(word('^'), cut_err(exponent))).parse_next(input)? else {
+    if opt(word('^')).parse_next(input)?.is_none() {
         return Ok(base);
-    };
-    let span = base.span.start..at.end;
-    Ok(Term { kind: Kind::Power(Box::new(base), exponent.to_owned()), span })
+    }
+    let exponent = cut_err(exponent).parse_next(input)?;
+    let span = base.span.start..exponent.span.end;
+    Ok(Term { kind: Kind::Power(Box::new(base), Box::new(exponent)), span })
+}
+
+/// An exponent: with its sign, and no power of its own.
+fn exponent(input: &mut Input<'_>) -> ModalResult<Term> {
+    let (sign, at) = opt(word('-')).with_span().parse_next(input)?;
+    let term = primary(input)?;
+    if sign.is_none() {
+        return Ok(term);
+    }
+    let span = at.start..term.span.end;
+    Ok(Term { kind: Kind::Negative(Box::new(term)), span })
 }
 
 fn primary(input: &mut Input<'_>) -> ModalResult<Term> {
     let of = |kind: fn(String) -> Kind| move |text: &str| kind(text.to_owned());
-    let within = || delimited(word('('), cut_err(sum), cut_err(')'));
-    let root = preceded(word("sqrt"), within()).map(|term| Kind::Root(Box::new(term)));
-    let kind =
-        alt((number.map(of(Kind::Number)), root, name.map(of(Kind::Name)), within().map(|term| term.kind)));
+    let within = delimited(word('('), cut_err(any_term), cut_err(')'));
+    let kind = alt((
+        number.map(of(Kind::Number)),
+        call,
+        name.map(of(Kind::Name)),
+        within.map(|term| term.kind),
+    ));
     word(kind.with_span()).map(|(kind, span)| Term { kind, span }).parse_next(input)
+}
+
+/// A function of one operand or more.
+fn call(input: &mut Input<'_>) -> ModalResult<Kind> {
+    let name = (any.verify(|c: &char| c.is_alphabetic()), take_while(0.., is_letter)).take();
+    let name: &str = terminated(name, word('(')).parse_next(input)?;
+    let mut operands = vec![cut_err(any_term).parse_next(input)?];
+    while opt(word(',')).parse_next(input)?.is_some() {
+        operands.push(cut_err(any_term).parse_next(input)?);
+    }
+    cut_err(')').parse_next(input)?;
+    Ok(Kind::Call(name.to_owned(), operands))
 }
 
 /// Digits with a point and an exponent, as TOML has them and as other languages do.
@@ -237,21 +302,21 @@ fn number<'s>(input: &mut Input<'s>) -> ModalResult<&'s str> {
     (preceded(not('_'), mantissa), opt(exponent)).take().parse_next(input)
 }
 
+/// Letters, digits and underscores; a part after a dot, and the word `rate` after a blank, as columns of a run's table
+/// have them.
 fn name<'s>(input: &mut Input<'s>) -> ModalResult<&'s str> {
-    let first = || any.verify(|c: &char| c.is_alphabetic());
-    let word = || (first(), take_while(0.., |c: char| c.is_alphanumeric() || c == '_')).void();
-    match input.state {
-        Names::Parameters => word().take().parse_next(input),
-        Names::Columns => {
-            let further = ('.', take_while(1.., |c: char| c.is_alphanumeric() || c == '_')).void();
-            let rate = (' ', "rate", not(letter)).void();
-            (word(), opt(further), opt(rate)).take().parse_next(input)
-        }
-    }
+    let word = (any.verify(|c: &char| c.is_alphabetic()), take_while(0.., is_letter));
+    let further = ('.', take_while(1.., is_letter));
+    let rate = (' ', "rate", not(letter));
+    (word, opt(further), opt(rate)).take().parse_next(input)
 }
 
 fn letter(input: &mut Input<'_>) -> ModalResult<char> {
-    any.verify(|c: &char| c.is_alphanumeric() || *c == '_').parse_next(input)
+    any.verify(|c: &char| is_letter(*c)).parse_next(input)
+}
+
+fn is_letter(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
 }
 
 /// Something with the spaces after it.

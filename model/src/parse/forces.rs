@@ -7,18 +7,21 @@ use crate::keys::Kind;
 use crate::validate::{Owner, Side};
 use crate::{Force, ForceKind, JointCoordinate, LoadFrame, Number, StopSide};
 
-/// Reads all forces.
-pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Force> {
-    let sections = tables::each(reader, page, "force", Owner::Force).into_iter().enumerate();
-    sections
-        .map(|(index, (mut section, name))| {
-            let kind = section.read_kind(reader, |_, _| None);
-            // Of a force of unknown kind nothing is asked.
-            let nothing = ForceKind::Motor { on: references::NO_COORDINATE, value: Number::integer(0) };
-            let kind = kind.map_or(nothing, |kind| Reading { reader, section, index }.force(kind));
-            Force { name, kind }
-        })
-        .collect()
+/// All tables of forces, whose names others refer to.
+pub(super) fn open<'t>(reader: &mut Reader<'_>, page: &Section<'t>) -> Vec<(Section<'t>, String)> {
+    tables::each(reader, page, "force", Owner::Force)
+}
+
+/// Reads all forces. Their strengths may be formulas of outputs, which are known by now.
+pub(super) fn read(reader: &mut Reader<'_>, sections: Vec<(Section<'_>, String)>) -> Vec<Force> {
+    let one = |(index, (mut section, name)): (usize, (Section<'_>, String))| {
+        let kind = section.read_kind(reader, |_, _| None);
+        // Of a force of unknown kind nothing is asked.
+        let nothing = ForceKind::Motor { on: references::NO_COORDINATE, value: Number::integer(0) };
+        let kind = kind.map_or(nothing, |kind| Reading { reader, section, index }.force(kind));
+        Force { name, kind }
+    };
+    sections.into_iter().enumerate().map(one).collect()
 }
 
 /// A force that is being read.
@@ -67,7 +70,7 @@ impl Reading<'_, '_, '_> {
 
     fn link(&mut self) -> ForceKind {
         let [first, second] = Side::BOTH.map(|side| self.end(side));
-        if !self.section.has("damping") {
+        if !self.section.has("damping") && !self.section.has("tension") {
             self.section.require(self.reader, "stiffness");
         }
         if self.section.has("stiffness") {
@@ -79,6 +82,7 @@ impl Reading<'_, '_, '_> {
             stiffness: self.number("stiffness"),
             damping: self.number("damping"),
             free_length: self.number("free_length"),
+            tension: self.number("tension"),
         }
     }
 

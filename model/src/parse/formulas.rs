@@ -1,47 +1,74 @@
-//! Formulas of columns of a run's table and of parameters.
+//! From an expression to the formula that it denotes: what moves, time, parameters and inputs, and functions of these.
 
-use super::computed::{Fault, size, syntax};
+use super::computed::{Fault, MOST_EXPONENT, MOST_WEIGHT, size, syntax};
 use super::expression::{self, Kind, Term};
+use super::functions;
 use super::names;
 use super::seen::Known;
 use super::units::pi;
 use crate::number::in_range;
-use crate::{Formula, Model, Number, parse_decimal};
+use crate::{Formula, Model, Number, Operation, Rational, Seen, parse_decimal};
+use gyro_program::elementary::Function;
 
-/// Largest exponent of a power.
-const MOST_EXPONENT: i32 = 100;
-
-/// What names in formulas mean.
+/// What names in formulas mean, and which of them a place allows.
 pub(super) struct Named<'m> {
+    /// Numbers of the mechanism.
     pub(super) columns: &'m Known,
-    pub(super) parameter: &'m dyn Fn(&str) -> Option<Number>,
-    /// All parameters, for messages.
-    pub(super) parameters: &'m [&'m str],
+    /// Parameters, and inputs where they may stand.
+    pub(super) number: &'m dyn Fn(&str) -> Option<Number>,
+    /// The names of all of these, for messages.
+    pub(super) numbers: &'m [&'m str],
+    /// Formulas that have a name.
+    pub(super) formulas: &'m [(String, Formula)],
+    /// What may not stand here: message, label and help.
+    pub(super) refuse: &'m dyn Fn(&str, Seen) -> Option<[String; 3]>,
+}
+
+/// Nothing is refused.
+pub(super) fn any(_: &str, _: Seen) -> Option<[String; 3]> {
+    None
 }
 
 impl Named<'_> {
     /// The formula that a text denotes; a text that is a column's name denotes that column.
     pub(super) fn formula(&self, text: &str) -> Result<Formula, Fault> {
         if let Some(seen) = self.column(text.trim()) {
-            return Ok(seen);
+            return match (self.refuse)(text.trim(), seen) {
+                Some(words) => Err(Fault { span: 0..text.len(), words }),
+                None => Ok(Formula::seen(text, seen)),
+            };
         }
-        let is_known = |name: &str| self.column(name).is_some() || (self.parameter)(name).is_some();
-        let term = expression::parse_formula(text).map_err(|at| syntax(text, at, &is_known))?;
-        let formula = self.of(&term)?;
-        if has_columns(&formula) { Ok(formula) } else { Err(constant(text)) }
+        let is_known = |name: &str| self.column(name).is_some() || (self.number)(name).is_some();
+        let term = expression::parse(text).map_err(|at| syntax(text, at, &is_known))?;
+        let mut build = Build { named: self, operations: Vec::new() };
+        let last = build.of(&term)?;
+        Ok(Formula { text: text.to_owned(), operations: reachable(&build.operations, last) })
     }
 
-    fn column(&self, name: &str) -> Option<Formula> {
+    /// The same, which must not be a constant.
+    pub(super) fn varying(&self, text: &str) -> Result<Formula, Fault> {
+        let formula = self.formula(text)?;
+        if formula.sees().next().is_some() { Ok(formula) } else { Err(constant(text)) }
+    }
+
+    fn column(&self, name: &str) -> Option<Seen> {
         let place = names::column(name, self.columns.iter().map(|(known, _)| known.as_str()))?;
-        Some(Formula::Seen(self.columns[place].1))
+        Some(self.columns[place].1)
     }
+}
 
-    fn of(&self, term: &Term) -> Result<Formula, Fault> {
-        let one = |a: &Term| self.of(a).map(Box::new);
-        let two = |a: &Term, b: &Term| Ok::<_, Fault>(Box::new([self.of(a)?, self.of(b)?]));
+/// A formula that is being built.
+pub(super) struct Build<'b, 'm> {
+    named: &'b Named<'m>,
+    operations: Vec<Operation>,
+}
+
+impl Build<'_, '_> {
+    /// The place of what a term denotes.
+    pub(super) fn of(&mut self, term: &Term) -> Result<usize, Fault> {
         Ok(match &term.kind {
             Kind::Number(text) => match parse_decimal(text).filter(in_range) {
-                Some(value) => Formula::Number(Number::Exact(value)),
+                Some(value) => self.exact(value),
                 None => {
                     return Err(fault(
                         term,
@@ -51,56 +78,264 @@ impl Named<'_> {
                 }
             },
             Kind::Name(name) => self.name(term, name)?,
-            Kind::Root(a) => Formula::Root(one(a)?),
-            Kind::Negative(a) => Formula::Negative(one(a)?),
-            Kind::Sum(a, b) => Formula::Sum(two(a, b)?),
-            Kind::Difference(a, b) => Formula::Difference(two(a, b)?),
-            Kind::Product(a, b) => Formula::Product(two(a, b)?),
-            Kind::Quotient(a, b) => Formula::Quotient(two(a, b)?),
+            Kind::Call(name, operands) => functions::call(self, term, name, operands)?,
+            Kind::Negative(a) => {
+                let a = self.of(a)?;
+                self.negative(a)
+            }
+            Kind::Sum(a, b) => self.two(a, b, Self::sum)?,
+            Kind::Difference(a, b) => self.two(a, b, Self::difference)?,
+            Kind::Product(a, b) => self.two(a, b, Self::product)?,
+            Kind::Quotient(a, b) => {
+                let (a, divisor) = (self.of(a)?, self.of(b)?);
+                let is_zero =
+                    matches!(&self.operations[divisor], Operation::Number(number) if number.is_zero());
+                if is_zero {
+                    return Err(fault(b, "a formula divides by zero", "divide by something that is not 0"));
+                }
+                self.quotient(a, divisor)
+            }
             Kind::Power(a, exponent) => {
-                let exponent = exponent.parse().ok().filter(|n: &i32| n.abs() <= MOST_EXPONENT);
-                let help = format!("write a whole number from -{MOST_EXPONENT} to {MOST_EXPONENT}");
-                let exponent =
-                    exponent.ok_or_else(|| fault(term, "the exponent of a power is too large", &help))?;
-                Formula::Power(one(a)?, exponent)
+                let base = self.of(a)?;
+                self.power(term, base, exponent)?
             }
             Kind::In(a, unit) => {
-                let unit = Formula::Number(Number::Exact(size(*unit)));
-                Formula::Product(Box::new([self.of(a)?, unit]))
+                let (a, unit) = (self.of(a)?, self.exact(size(*unit)));
+                self.product(a, unit)
+            }
+            Kind::Greater(..) | Kind::AtLeast(..) | Kind::And(..) | Kind::Or(..) => {
+                let help = "write if(condition, a, b), which is a where it holds and b elsewhere";
+                return Err(fault(term, "a condition stands in place of a number", help));
             }
         })
     }
 
-    fn name(&self, term: &Term, name: &str) -> Result<Formula, Fault> {
-        match (self.column(name), (self.parameter)(name)) {
-            (Some(_), Some(_)) => Err(fault(
+    fn two(&mut self, a: &Term, b: &Term, of: fn(&mut Self, usize, usize) -> usize) -> Result<usize, Fault> {
+        let (a, b) = (self.of(a)?, self.of(b)?);
+        Ok(of(self, a, b))
+    }
+
+    fn name(&mut self, term: &Term, name: &str) -> Result<usize, Fault> {
+        let named = self.named;
+        let formula = named.formulas.iter().find(|(known, _)| known == name);
+        match (named.column(name), (named.number)(name), formula) {
+            (Some(_), Some(_), _) => Err(fault(
                 term,
-                &format!("`{name}` names a column of a run's table, and a parameter"),
-                "give the parameter or the joint another name",
+                &format!("`{name}` names a column of a run's table, and a parameter or an input"),
+                "give the parameter, the input or the joint another name",
             )),
-            (Some(column), None) => Ok(column),
-            (None, Some(number)) => Ok(Formula::Number(number)),
-            (None, None) if name == "pi" => Ok(Formula::Number(Number::Exact(pi()))),
-            (None, None) => {
-                let columns = self.columns.iter().map(|(name, _)| name.as_str());
-                let known: Vec<&str> = columns.chain(self.parameters.iter().copied()).collect();
+            (Some(seen), None, _) => self.seen(term, name, seen),
+            (None, Some(number), _) => Ok(self.push(Operation::Number(number))),
+            (None, None, Some((_, formula))) => self.spliced(term, name, formula),
+            (None, None, None) if name == "t" => self.seen(term, name, Seen::Time),
+            (None, None, None) if name == "pi" => Ok(self.exact(pi())),
+            (None, None, None) => {
+                let columns = named.columns.iter().map(|(name, _)| name.as_str());
+                let formulas = named.formulas.iter().map(|(name, _)| name.as_str());
+                let known: Vec<&str> = columns.chain(formulas).chain(named.numbers.iter().copied()).collect();
                 let message = format!("`{name}` names no column of a run's table and no parameter");
                 Err(fault(term, &message, &names::instead(name, &known)))
             }
         }
     }
+
+    fn seen(&mut self, term: &Term, name: &str, seen: Seen) -> Result<usize, Fault> {
+        match (self.named.refuse)(name, seen) {
+            Some(words) => Err(Fault { span: term.span.clone(), words }),
+            None => Ok(self.push(Operation::Seen(seen))),
+        }
+    }
+
+    /// The operations of another formula.
+    fn spliced(&mut self, term: &Term, name: &str, formula: &Formula) -> Result<usize, Fault> {
+        let mut places: Vec<usize> = Vec::new();
+        for operation in &formula.operations {
+            let place = match operation {
+                Operation::Seen(seen) => self.seen(term, name, *seen)?,
+                other => self.push(other.moved(|place| places[place])),
+            };
+            places.push(place);
+        }
+        Ok(places[places.len() - 1])
+    }
+
+    pub(super) fn exact(&mut self, value: Rational) -> usize {
+        self.push(Operation::Number(Number::Exact(value)))
+    }
+
+    pub(super) fn integer(&mut self, value: i64) -> usize {
+        self.push(Operation::Number(Number::integer(value)))
+    }
+
+    pub(super) fn call(&mut self, function: Function, operands: [usize; 2]) -> usize {
+        self.push(Operation::Call(function, operands))
+    }
+
+    pub(super) fn negative(&mut self, a: usize) -> usize {
+        match self.number(a) {
+            Some(number) => self.push(Operation::Number(-number)),
+            None => self.push(Operation::Negative(a)),
+        }
+    }
+
+    pub(super) fn sum(&mut self, a: usize, b: usize) -> usize {
+        self.folded(a, b, |a, b| Some(a + b)).unwrap_or_else(|| match [a, b].map(|x| self.is_zero(x)) {
+            [true, _] => b,
+            [_, true] => a,
+            _ => self.push(Operation::Sum(a, b)),
+        })
+    }
+
+    pub(super) fn difference(&mut self, a: usize, b: usize) -> usize {
+        self.folded(a, b, |a, b| Some(a - b)).unwrap_or_else(|| match [a, b].map(|x| self.is_zero(x)) {
+            [true, _] => self.negative(b),
+            [_, true] => a,
+            _ => self.push(Operation::Difference(a, b)),
+        })
+    }
+
+    pub(super) fn product(&mut self, a: usize, b: usize) -> usize {
+        self.folded(a, b, |a, b| Some(a * b)).unwrap_or_else(|| self.push(Operation::Product(a, b)))
+    }
+
+    pub(super) fn quotient(&mut self, a: usize, b: usize) -> usize {
+        self.folded(a, b, Number::over).unwrap_or_else(|| self.push(Operation::Quotient(a, b)))
+    }
+
+    /// The first where the condition holds, the second elsewhere; neither is of any matter where it is not taken.
+    pub(super) fn choice(&mut self, condition: &Term, [a, b]: [usize; 2]) -> Result<usize, Fault> {
+        Ok(match &condition.kind {
+            Kind::Greater(x, y) => {
+                let margin = self.two(x, y, Self::difference)?;
+                self.where_positive(margin, [a, b])
+            }
+            Kind::AtLeast(x, y) => {
+                let margin = self.two(y, x, Self::difference)?;
+                self.where_positive(margin, [b, a])
+            }
+            Kind::And(p, q) => {
+                let inner = self.choice(q, [a, b])?;
+                self.choice(p, [inner, b])?
+            }
+            Kind::Or(p, q) => {
+                let inner = self.choice(q, [a, b])?;
+                self.choice(p, [a, inner])?
+            }
+            Kind::Call(name, operands) if name == "not" && operands.len() == 1 => {
+                self.choice(&operands[0], [b, a])?
+            }
+            _ => {
+                let help = "compare two numbers: a > b, a >= b, a < b or a <= b, with and, or, not(...)";
+                return Err(fault(condition, "a number stands in place of a condition", help));
+            }
+        })
+    }
+
+    /// The first where this is greater than zero, the second elsewhere.
+    pub(super) fn where_positive(&mut self, margin: usize, [a, b]: [usize; 2]) -> usize {
+        if a == b {
+            return a;
+        }
+        let zero = self.integer(0);
+        let taken = if a == zero { zero } else { self.call(Function::When, [margin, a]) };
+        let other = if b == zero { zero } else { self.call(Function::Unless, [margin, b]) };
+        self.sum(taken, other)
+    }
+
+    /// A power: whole exponents by products, halves by a root, all others by logarithm and exponential function.
+    fn power(&mut self, term: &Term, base: usize, exponent: &Term) -> Result<usize, Fault> {
+        let by = self.of(exponent)?;
+        let Some(Number::Exact(value)) = self.number(by) else { return Ok(self.general_power(base, by)) };
+        let double = &value + &value;
+        let Some(halves) = double.is_integer().then(|| i32::try_from(double.to_integer()).ok()).flatten()
+        else {
+            return Ok(self.general_power(base, by));
+        };
+        let (whole, has_root) = (halves.div_euclid(2), halves.rem_euclid(2) == 1);
+        if whole.abs() > MOST_EXPONENT {
+            let help = format!("write one from -{MOST_EXPONENT} to {MOST_EXPONENT}");
+            return Err(fault(term, "the exponent of a power is too large", &help));
+        }
+        let power = self.whole_power(base, whole);
+        if !has_root {
+            return Ok(power);
+        }
+        let root = self.call(Function::Sqrt, [base; 2]);
+        Ok(self.product(power, root))
+    }
+
+    fn whole_power(&mut self, base: usize, exponent: i32) -> usize {
+        let folded = self.number(base).and_then(|number| number.power(exponent)).filter(is_short);
+        match (folded, exponent) {
+            (Some(number), _) => self.push(Operation::Number(number)),
+            (None, 0) => self.integer(1),
+            (None, 1) => base,
+            (None, _) => self.push(Operation::Power(base, exponent)),
+        }
+    }
+
+    fn general_power(&mut self, base: usize, exponent: usize) -> usize {
+        let logarithm = self.call(Function::Ln, [base; 2]);
+        let scaled = self.product(exponent, logarithm);
+        self.call(Function::Exp, [scaled; 2])
+    }
+
+    /// The number at a place, if it is one that arithmetic with parameters can go on with.
+    fn number(&self, place: usize) -> Option<Number> {
+        match &self.operations[place] {
+            Operation::Number(Number::Input { .. }) => None,
+            Operation::Number(number) => Some(number.clone()),
+            _ => None,
+        }
+    }
+
+    fn is_zero(&self, place: usize) -> bool {
+        self.number(place).is_some_and(|number| number.is_zero())
+    }
+
+    /// An operation on numbers of the model file, done exactly.
+    fn folded(
+        &mut self,
+        a: usize,
+        b: usize,
+        of: impl Fn(Number, Number) -> Option<Number>,
+    ) -> Option<usize> {
+        let number = of(self.number(a)?, self.number(b)?).filter(is_short)?;
+        Some(self.push(Operation::Number(number)))
+    }
+
+    fn push(&mut self, operation: Operation) -> usize {
+        let known = self.operations.iter().position(|known| *known == operation);
+        known.unwrap_or_else(|| {
+            self.operations.push(operation);
+            self.operations.len() - 1
+        })
+    }
 }
 
-fn has_columns(formula: &Formula) -> bool {
-    match formula {
-        Formula::Number(_) => false,
-        Formula::Seen(_) => true,
-        Formula::Negative(a) | Formula::Root(a) | Formula::Power(a, _) => has_columns(a),
-        Formula::Sum(parts)
-        | Formula::Difference(parts)
-        | Formula::Product(parts)
-        | Formula::Quotient(parts) => parts.iter().any(has_columns),
+fn is_short(number: &Number) -> bool {
+    match number {
+        Number::Exact(value) => in_range(value),
+        number => number.weight() <= MOST_WEIGHT,
     }
+}
+
+/// The operations that the last of them needs.
+fn reachable(operations: &[Operation], last: usize) -> Vec<Operation> {
+    let mut is_needed = vec![false; operations.len()];
+    is_needed[last] = true;
+    for place in (0..=last).rev().filter(|&place| place <= last) {
+        if is_needed[place] {
+            operations[place].operands().for_each(|operand| is_needed[operand] = true);
+        }
+    }
+    let mut places = vec![0; operations.len()];
+    let mut kept = Vec::new();
+    for (place, operation) in operations.iter().enumerate().filter(|(place, _)| is_needed[*place]) {
+        places[place] = kept.len();
+        kept.push(operation.moved(|operand| places[operand]));
+    }
+    kept
 }
 
 fn constant(text: &str) -> Fault {
@@ -112,14 +347,14 @@ fn constant(text: &str) -> Fault {
     Fault { span: 0..text.len(), words }
 }
 
-fn fault(term: &Term, message: &str, help: &str) -> Fault {
+pub(super) fn fault(term: &Term, message: &str, help: &str) -> Fault {
     let words = [message, "here", help].map(str::to_owned);
     Fault { span: term.span.clone(), words }
 }
 
 /// The formula of a text, of a model that has been read.
 pub(crate) fn formula_of(model: &Model, text: &str) -> Result<Formula, String> {
-    let parameter = |name: &str| {
+    let number = |name: &str| {
         let index = model.parameters.iter().position(|parameter| parameter.name == name);
         let derived = || {
             let mut derived = model.derived_parameters.iter();
@@ -127,9 +362,10 @@ pub(crate) fn formula_of(model: &Model, text: &str) -> Result<Formula, String> {
         };
         index.map(|index| Number::Parameter { index, negated: false }).or_else(derived)
     };
-    let parameters: Vec<&str> = model.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-    let named = Named { columns: &model.visible(), parameter: &parameter, parameters: &parameters };
-    named.formula(text).map_err(|Fault { words: [message, _, help], .. }| format!("{message}; {help}"))
+    let numbers: Vec<&str> = model.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+    let (columns, formulas) = (&model.visible(), &[]);
+    let named = Named { columns, number: &number, numbers: &numbers, formulas, refuse: &any };
+    named.varying(text).map_err(|Fault { words: [message, _, help], .. }| format!("{message}; {help}"))
 }
 
 impl Model {

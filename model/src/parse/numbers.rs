@@ -7,7 +7,7 @@ use super::computed::{self, Fault, Meaning};
 use super::expression::{self, Term};
 use super::reader::Reader;
 use super::section::{Item, Section, all, found};
-use super::{names, units};
+use super::{laws, names, units};
 use crate::keys::{FORCE, Key, Value};
 use crate::number::{SIZE_EXPONENT, in_range};
 use crate::validate::out_of_range;
@@ -227,7 +227,7 @@ fn example(key: &str, length: usize) -> Vec<&'static str> {
     (0..length).map(|k| if Some(k) == one { "1" } else { "0" }).collect()
 }
 
-/// A parameter, an input or an expression.
+/// A parameter, an input or an expression; of a strength a formula, too.
 fn reference(reader: &mut Reader<'_>, item: Item<'_>, text: &str, allowed: Names) -> Option<Number> {
     let (name, negated) = text.strip_prefix('-').map_or((text, false), |name| (name, true));
     if let Some(number) = named(reader, name) {
@@ -236,17 +236,16 @@ fn reference(reader: &mut Reader<'_>, item: Item<'_>, text: &str, allowed: Names
     match (reader.inputs.iter().position(|input| input == name), allowed) {
         (Some(index), Names::ParametersAndInputs) => return Some(Number::Input { index, negated }),
         (Some(_), Names::Parameters) => item.wrong(reader, not_an_input(item.key.name, name)),
+        (None, Names::ParametersAndInputs) if laws::is_meant(reader, item, name) => {
+            return laws::strength(reader, item, text);
+        }
         (None, _) if is_word(text) || parse_decimal(text).is_some() || is_hyphenated(reader, text) => {
             item.wrong(reader, unknown_name(reader, item.key.name, text, allowed));
         }
-        (None, _) => return expression(reader, item, text, allowed),
+        (None, Names::ParametersAndInputs) => return laws::strength(reader, item, text),
+        (None, Names::Parameters) => return computed(reader, item, text),
     }
     None
-}
-
-/// The number that an expression of parameters denotes.
-pub(super) fn computed(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Number> {
-    expression(reader, item, text, Names::Parameters)
 }
 
 /// What the model file calls by a name.
@@ -278,8 +277,8 @@ fn is_hyphenated(reader: &Reader<'_>, text: &str) -> bool {
         && !text.split('-').any(is_known)
 }
 
-/// The number that an expression denotes.
-fn expression(reader: &mut Reader<'_>, item: Item<'_>, text: &str, allowed: Names) -> Option<Number> {
+/// The number that an expression of parameters denotes.
+pub(super) fn computed(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Number> {
     let term = match expression::parse(text) {
         Ok(term) => term,
         Err(at) => {
@@ -295,7 +294,7 @@ fn expression(reader: &mut Reader<'_>, item: Item<'_>, text: &str, allowed: Name
         named: &|name| named(reader, name),
         unknown: &|name| {
             if reader.inputs.iter().any(|input| input == name) {
-                input_within(name, allowed)
+                input_within(name)
             } else {
                 unknown_in_expression(reader, name)
             }
@@ -354,12 +353,9 @@ fn misused_unit(key: &Key, text: &str, term: &Term) -> Option<[String; 3]> {
     })
 }
 
-fn input_within(name: &str, allowed: Names) -> [String; 3] {
-    let help = match allowed {
-        Names::ParametersAndInputs => format!("write the input alone, \"{name}\" or \"-{name}\""),
-        Names::Parameters => format!("declare `{name}` under [parameters]"),
-    };
-    [format!("the input `{name}` cannot be part of an expression"), "an input".to_owned(), help]
+fn input_within(name: &str) -> [String; 3] {
+    let help = format!("declare `{name}` under [parameters]: only strengths of forces may be computed from inputs");
+    [format!("the input `{name}` cannot be part of a number"), "an input".to_owned(), help]
 }
 
 /// The message for an unknown name in an expression.
@@ -369,12 +365,12 @@ pub(super) fn unknown_in_expression(reader: &Reader<'_>, name: &str) -> [String;
     let moves = reader.has_joint(name);
     let help = match name.to_ascii_lowercase().as_str() {
         _ if moves => format!(
-            "numbers are constants and parameters, and `{name}` is a joint, which moves: declare an input for the \
-             strength of a motor or load, and let a [[controller]] or your program set it"
+            "this number is a constant or computed from parameters, and `{name}` is a joint, which moves: only strengths \
+             of forces may be formulas of what moves ({})",
+            names::list(&strengths())
         ),
         "tau" => "write 2*pi".to_owned(),
         "pi" => "write pi".to_owned(),
-        "sin" | "cos" | "tan" | "exp" => "the only function is sqrt: write the value".to_owned(),
         _ if known.is_empty() => format!("write a number, or declare `{name}` under [parameters]"),
         _ => format!("{}, or declare `{name}` under [parameters]", names::instead(name, &known)),
     };

@@ -9,11 +9,11 @@ use super::reader::Reader;
 use super::section::{Section, keyword};
 use super::{
     bodies, contacts, controllers, couplings, events, forces, joints, outputs, parameters, point_masses,
-    simulation,
+    seen, simulation,
 };
 use crate::keys::{FILE, GENERATE};
 use crate::validate::{Owner, Place};
-use crate::{Between, Model};
+use crate::{Between, Contact, Model};
 
 /// Reads everything. Where something is wrong the reader knows, and a default stands in the model.
 pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
@@ -30,7 +30,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let joints = joints::read(reader, &page);
     let couplers = couplings::couplers(reader, &page);
     let mut drivers = couplings::drivers(reader, &page);
-    let mut forces = forces::read(reader, &page);
+    let sections = forces::open(reader, &page);
     let n_inputs = inputs.len() + lines::n_inputs((&mut bodies, &mut drivers));
     let mut contacts = contacts::read(reader, &page, n_inputs);
     let taken = contacts.iter().map(|contact| &contact.name).chain(parameters.iter().map(|p| &p.name));
@@ -39,12 +39,15 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     for contact in &contacts {
         inputs.push(contact.own_input());
         between.push(Between::default());
-        forces.push(contact.own_force());
     }
     let named = contacts.iter().map(|contact| Some(contact.name.clone()));
     reader.names.entry("force").or_default().extend(named);
     let mut outputs = outputs::read(reader, &page);
     contacts::loads(reader, &mut contacts, &joints, &mut outputs);
+    reader.visible = seen::known(reader, &outputs);
+    reader.outputs = outputs.iter().map(|output| output.kind.clone()).collect();
+    let mut forces = forces::read(reader, sections);
+    forces.extend(contacts.iter().map(Contact::own_force));
     let controllers = controllers::read(reader, &page, &outputs);
     let events = events::read(reader, &page, &outputs);
     let redundant = Vec::new();

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::diagnostics::{Diagnostic, Related};
 use crate::validate::{Owner, Place, Problem};
-use crate::{JointKind, Number, Rational};
+use crate::{Formula, JointKind, Number, OutputKind, Rational, Seen};
 
 /// Gets the text of a table by the path that the model file gives.
 pub(super) type Load<'t> = dyn FnMut(&str) -> Result<String, String> + 't;
@@ -29,6 +29,12 @@ pub(super) struct Reader<'t> {
     pub(super) inputs: Vec<String>,
     /// Names of the model file's bodies, joints and so on, by what they are, as far as it states them correctly.
     pub(super) names: HashMap<&'static str, Vec<Option<String>>>,
+    /// Numbers of the mechanism by the names that formulas have for them, once outputs are read.
+    pub(super) visible: Vec<(String, Seen)>,
+    /// What these outputs are.
+    pub(super) outputs: Vec<OutputKind>,
+    /// Formulas that have a name.
+    pub(super) formulas: Vec<(String, Formula)>,
     /// Kinds of its joints, likewise.
     pub(super) joint_kinds: Vec<Option<JointKind>>,
     /// Names of joints, couplers, drivers and outputs so far, with their places and what they are.
@@ -63,6 +69,9 @@ impl<'t> Reader<'t> {
             derived: Vec::new(),
             inputs: Vec::new(),
             names: HashMap::new(),
+            visible: Vec::new(),
+            outputs: Vec::new(),
+            formulas: Vec::new(),
             joint_kinds: Vec::new(),
             taken: HashMap::new(),
         }

@@ -46,7 +46,9 @@ impl<'m> Ranged<'m> {
         numbers: impl IntoIterator<Item = (&'static str, &'m Number)>,
     ) -> Self {
         let key = |name| keys.clone().into_iter().find(|key| key.name == name && key.range != Range::Any);
-        let numbers = numbers.into_iter().filter_map(|(name, number)| Some((key(name)?, number)));
+        // Of formulas it is not known before they move.
+        let numbers = numbers.into_iter().filter(|(_, number)| number.formula().is_none());
+        let numbers = numbers.filter_map(|(name, number)| Some((key(name)?, number)));
         Self { owner, title, numbers: numbers.collect() }
     }
 

@@ -36,6 +36,7 @@ impl ParameterRule<'_> {
             match number {
                 Number::Parameter { index, .. } => Some(*index),
                 Number::Computed(computation) => computation.operands().into_iter().find_map(first),
+                Number::Formula(formula) => formula.numbers().find_map(first),
                 Number::Exact(_) | Number::Input { .. } => None,
             }
         }

@@ -117,7 +117,7 @@ impl<'a, F: Field> Scope<'a, F> {
 fn exact<const N: usize>(numbers: &[Number; N]) -> Option<[Rational; N]> {
     let rational = |number: &Number| match number {
         Number::Exact(value) => Some(value.clone()),
-        Number::Parameter { .. } | Number::Input { .. } | Number::Computed(_) => None,
+        Number::Parameter { .. } | Number::Input { .. } | Number::Computed(_) | Number::Formula(_) => None,
     };
     numbers.iter().map(rational).collect::<Option<Vec<_>>>()?.try_into().ok()
 }

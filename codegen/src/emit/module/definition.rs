@@ -242,7 +242,7 @@ fn number_tokens(model: &Model, number: &Number) -> TokenStream {
                 quote! { gyro_sim::admissible::power(#base, #exponent) }
             }
         },
-        Number::Exact(_) | Number::Input { .. } => float(model.value(number)),
+        Number::Exact(_) | Number::Input { .. } | Number::Formula(_) => float(model.value(number)),
     }
 }
 

@@ -124,7 +124,7 @@ fn push_parameters(number: &Number, places: &mut Vec<usize>) {
         Number::Computed(of) => {
             of.operands().into_iter().for_each(|operand| push_parameters(operand, places))
         }
-        Number::Exact(_) | Number::Input { .. } => {}
+        Number::Exact(_) | Number::Input { .. } | Number::Formula(_) => {}
     }
 }
 

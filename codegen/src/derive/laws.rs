@@ -1,0 +1,112 @@
+//! Strengths of forces that are formulas, see [`gyro_model::Formula`].
+
+use crate::derive::joint_coordinate;
+use crate::derive::points::{self, PointOfBody};
+use crate::derive::system::System;
+use crate::expr::graph::{ExprId, Graph};
+use crate::expr::symbol::Symbol;
+use gyro_model::{ForceKind, Formula, JointCoordinate, Number, Operation, OutputKind, Seen};
+use std::convert::Infallible;
+
+/// What laws read of joint coordinates.
+pub trait Readings {
+    /// The joint coordinate; of an angle its continuous value.
+    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId;
+    /// Its rate.
+    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId;
+}
+
+/// Joint coordinates in terms of maximal ones.
+pub struct OfBodies;
+
+impl Readings for OfBodies {
+    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        joint_coordinate::value(system, on)
+    }
+
+    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        joint_coordinate::rate(system, on)
+    }
+}
+
+/// The distance of a link's ends, and its rate.
+pub struct Line {
+    pub length: ExprId,
+    pub rate: ExprId,
+}
+
+impl Line {
+    /// A strength of a link.
+    pub fn strength(&self, system: &mut System, number: &Number) -> ExprId {
+        read(system, &OfBodies, Some(self), number)
+    }
+}
+
+/// A strength.
+pub fn strength(system: &mut System, readings: &impl Readings, number: &Number) -> ExprId {
+    read(system, readings, None, number)
+}
+
+fn read(system: &mut System, readings: &impl Readings, line: Option<&Line>, number: &Number) -> ExprId {
+    let Number::Formula(formula) = number else { return system.number(number) };
+    value(system, formula, |system, seen| match (seen, line) {
+        (Seen::Coordinate(on), _) => readings.value(system, on),
+        (Seen::Rate(on), _) => readings.rate(system, on),
+        (Seen::Time, _) => system.graph.symbol(Symbol::Time),
+        (Seen::Output { output, number }, _) => of_output(system, output, number),
+        (Seen::Length, Some(line)) => line.length,
+        (Seen::LengthRate, Some(line)) => line.rate,
+        (Seen::Length | Seen::LengthRate, None) => unreachable!("the reader knows lengths in links only"),
+    })
+}
+
+/// A number of an output of position or velocity.
+fn of_output(system: &mut System, output: usize, number: usize) -> ExprId {
+    match &system.model.outputs[output].kind {
+        OutputKind::Pose(frame) => points::pose(system, frame)[number],
+        OutputKind::Velocity(frame) => points::velocity(system, frame)[number],
+        // Of these the rates alone.
+        OutputKind::Inertial(frame) => {
+            let w = system.poses[frame.body].w;
+            points::by_axes(system, frame, w)[number - 3]
+        }
+        OutputKind::Link { force } => match &system.model.forces[*force].kind {
+            ForceKind::Link { first, second, .. } => {
+                let [from, to] = [first, second].map(|(body, point)| PointOfBody::new(system, *body, point));
+                let line = system.graph.sub_vec(&to.position, &from.position);
+                let square = system.graph.dot(&line, &line);
+                system.graph.sqrt(square)
+            }
+            _ => unreachable!("the output is one of a link"),
+        },
+        _ => unreachable!("the reader refuses outputs that follow from forces"),
+    }
+}
+
+/// The expression that a formula denotes, with what it sees.
+pub fn value(
+    system: &mut System,
+    formula: &Formula,
+    mut see: impl FnMut(&mut System, Seen) -> ExprId,
+) -> ExprId {
+    let value = formula.value(|operation, values: &[ExprId]| {
+        Ok::<_, Infallible>(match operation {
+            Operation::Number(number) => system.number(number),
+            Operation::Seen(seen) => see(system, *seen),
+            Operation::Negative(a) => system.graph.neg(values[*a]),
+            Operation::Sum(a, b) => system.graph.add(values[*a], values[*b]),
+            Operation::Difference(a, b) => system.graph.sub(values[*a], values[*b]),
+            Operation::Product(a, b) => system.graph.mul(values[*a], values[*b]),
+            Operation::Quotient(a, b) => system.graph.div(values[*a], values[*b]),
+            Operation::Power(a, exponent) => power(system, values[*a], *exponent),
+            Operation::Call(function, operands) => system.graph.call(*function, operands.map(|a| values[a])),
+        })
+    });
+    let Ok(value) = value;
+    value
+}
+
+fn power(system: &mut System, base: ExprId, exponent: i32) -> ExprId {
+    let power = system.power(base, exponent.unsigned_abs());
+    if exponent < 0 { system.graph.div(Graph::ONE, power) } else { power }
+}

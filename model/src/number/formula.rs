@@ -1,0 +1,125 @@
+//! Formulas of what is seen of a mechanism: laws of forces, what events watch.
+
+use super::Number;
+use crate::{CoordinateUse, JointCoordinate, Seen};
+use gyro_program::elementary::Function;
+
+/// Arithmetic with numbers of the model file and numbers of the mechanism, such as `"pan rate * length - 0.3"`: a list
+/// of operations, each of earlier ones, of which the last gives the value. What occurs twice is computed once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Formula {
+    /// The text, as the model file has it.
+    pub text: String,
+    /// The operations, of which there is at least one.
+    pub operations: Vec<Operation>,
+}
+
+/// An operation of a formula. Operands are the places of earlier ones.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Operation {
+    /// A number of the model file.
+    Number(Number),
+    /// A number of the mechanism.
+    Seen(Seen),
+    /// The other sign.
+    Negative(usize),
+    /// The sum of both.
+    Sum(usize, usize),
+    /// The first less the second.
+    Difference(usize, usize),
+    /// The product of both.
+    Product(usize, usize),
+    /// The first divided by the second.
+    Quotient(usize, usize),
+    /// A whole power, of which the exponent is neither 0 nor 1.
+    Power(usize, i32),
+    /// An elementary function; of one operand both are the same.
+    Call(Function, [usize; 2]),
+}
+
+impl Formula {
+    /// One number of the mechanism, by its name.
+    pub fn seen(name: &str, seen: Seen) -> Self {
+        Self { text: name.to_owned(), operations: vec![Operation::Seen(seen)] }
+    }
+
+    /// It less another.
+    #[must_use]
+    pub(crate) fn minus(&self, other: &Self) -> Self {
+        let text = format!("{} - ({})", self.text, other.text);
+        let (first, shift) = (self.operations.len() - 1, self.operations.len());
+        let mut operations = self.operations.clone();
+        operations.extend(other.operations.iter().map(|operation| operation.moved(|place| place + shift)));
+        operations.push(Operation::Difference(first, operations.len() - 1));
+        Self { text, operations }
+    }
+
+    /// The value, given how to compute an operation from the values of earlier ones.
+    ///
+    /// # Errors
+    /// The first that there is of an operation.
+    pub fn value<T: Clone, E>(
+        &self,
+        mut compute: impl FnMut(&Operation, &[T]) -> Result<T, E>,
+    ) -> Result<T, E> {
+        let mut values: Vec<T> = Vec::with_capacity(self.operations.len());
+        for operation in &self.operations {
+            values.push(compute(operation, &values)?);
+        }
+        Ok(values.swap_remove(values.len() - 1))
+    }
+
+    /// All numbers of the model file that occur in it.
+    pub fn numbers(&self) -> impl Iterator<Item = &Number> {
+        self.operations.iter().filter_map(|operation| match operation {
+            Operation::Number(number) => Some(number),
+            _ => None,
+        })
+    }
+
+    /// All numbers of the mechanism that occur in it.
+    pub fn sees(&self) -> impl Iterator<Item = Seen> {
+        self.operations.iter().filter_map(|operation| match operation {
+            Operation::Seen(seen) => Some(*seen),
+            _ => None,
+        })
+    }
+
+    /// What it asks of joint coordinates.
+    pub fn uses(&self) -> impl Iterator<Item = (JointCoordinate, CoordinateUse)> {
+        self.sees().filter_map(|seen| match seen {
+            Seen::Coordinate(on) => Some((on, CoordinateUse::Value)),
+            Seen::Rate(on) => Some((on, CoordinateUse::Rate)),
+            Seen::Output { .. } | Seen::Time | Seen::Length | Seen::LengthRate => None,
+        })
+    }
+}
+
+impl Operation {
+    /// The places of its operands.
+    pub fn operands(&self) -> impl Iterator<Item = usize> {
+        let two = match *self {
+            Self::Number(_) | Self::Seen(_) => [None; 2],
+            Self::Negative(a) | Self::Power(a, _) => [Some(a), None],
+            Self::Sum(a, b) | Self::Difference(a, b) | Self::Product(a, b) | Self::Quotient(a, b) => {
+                [Some(a), Some(b)]
+            }
+            Self::Call(_, [a, b]) => [Some(a), Some(b)],
+        };
+        two.into_iter().flatten()
+    }
+
+    /// The same with other places of its operands.
+    pub(crate) fn moved(&self, to: impl Fn(usize) -> usize) -> Self {
+        match *self {
+            Self::Negative(a) => Self::Negative(to(a)),
+            Self::Power(a, exponent) => Self::Power(to(a), exponent),
+            Self::Sum(a, b) => Self::Sum(to(a), to(b)),
+            Self::Difference(a, b) => Self::Difference(to(a), to(b)),
+            Self::Product(a, b) => Self::Product(to(a), to(b)),
+            Self::Quotient(a, b) => Self::Quotient(to(a), to(b)),
+            Self::Call(function, operands) => Self::Call(function, operands.map(to)),
+            Self::Number(_) | Self::Seen(_) => self.clone(),
+        }
+    }
+}

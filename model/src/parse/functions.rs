@@ -1,0 +1,179 @@
+//! The functions that formulas may call.
+
+use super::computed::Fault;
+use super::expression::Term;
+use super::formulas::{Build, fault};
+use super::names;
+use crate::{Rational, parse_decimal};
+use gyro_program::elementary::Function;
+
+/// Their names, each with what it takes.
+const ALL: [(&str, &str); 25] = [
+    ("sin", "x"),
+    ("cos", "x"),
+    ("tan", "x"),
+    ("asin", "x"),
+    ("acos", "x"),
+    ("atan", "x"),
+    ("atan2", "y, x"),
+    ("sinh", "x"),
+    ("cosh", "x"),
+    ("tanh", "x"),
+    ("exp", "x"),
+    ("ln", "x"),
+    ("log10", "x"),
+    ("sqrt", "x"),
+    ("abs", "x"),
+    ("sign", "x"),
+    ("min", "a, b"),
+    ("max", "a, b"),
+    ("hypot", "a, b"),
+    ("floor", "x"),
+    ("mod", "a, b"),
+    ("step", "x, x0, y0, x1, y1"),
+    ("ramp", "z, width"),
+    ("if", "condition, a, b"),
+    ("not", "condition"),
+];
+
+/// ln 10.
+const LN_10: &str = "2.302585092994045684017991454684364207601101488";
+
+/// A call of a function.
+pub(super) fn call(
+    build: &mut Build<'_, '_>,
+    term: &Term,
+    name: &str,
+    operands: &[Term],
+) -> Result<usize, Fault> {
+    let Some((_, takes)) = ALL.iter().find(|(known, _)| *known == name) else {
+        let known: Vec<&str> = ALL.iter().map(|(name, _)| *name).collect();
+        let help = if name == "log" { "write ln(...) or log10(...)".to_owned() } else { names::instead(name, &known) };
+        return Err(fault(term, &format!("there is no function `{name}`"), &help));
+    };
+    let length = takes.split(", ").count();
+    if operands.len() != length {
+        let message = format!("`{name}` takes {length} operands, and there are {}", operands.len());
+        return Err(fault(term, &message, &format!("write {name}({takes})")));
+    }
+    match (name, operands) {
+        ("if", [condition, a, b]) => {
+            let chosen = [build.of(a)?, build.of(b)?];
+            build.choice(condition, chosen)
+        }
+        ("not", _) => {
+            let help = "write if(condition, a, b), which is a where it holds and b elsewhere";
+            Err(fault(term, "a condition stands in place of a number", help))
+        }
+        _ => {
+            let operands = operands.iter().map(|operand| build.of(operand)).collect::<Result<Vec<_>, _>>()?;
+            Ok(build.value(name, &operands))
+        }
+    }
+}
+
+impl Build<'_, '_> {
+    /// The value of a function at operands of the right number.
+    fn value(&mut self, name: &str, operands: &[usize]) -> usize {
+        match (name, operands) {
+            ("tan", &[x]) => {
+                let [sin, cos] = [Function::Sin, Function::Cos].map(|function| self.call(function, [x; 2]));
+                self.quotient(sin, cos)
+            }
+            ("asin", &[x]) => {
+                let other = self.other_side(x);
+                self.call(Function::Atan2, [x, other])
+            }
+            ("acos", &[x]) => {
+                let other = self.other_side(x);
+                self.call(Function::Atan2, [other, x])
+            }
+            ("atan", &[x]) => {
+                let one = self.integer(1);
+                self.call(Function::Atan2, [x, one])
+            }
+            // Near zero the difference of two exponentials would lose its digits.
+            ("sinh", &[x]) => {
+                let (tanh, cosh) = (self.call(Function::Tanh, [x; 2]), self.cosh(x));
+                self.product(tanh, cosh)
+            }
+            ("cosh", &[x]) => self.cosh(x),
+            ("log10", &[x]) => {
+                let (ln, scale) = (self.call(Function::Ln, [x; 2]), self.exact(ln_10()));
+                self.quotient(ln, scale)
+            }
+            ("sign", &[x]) => {
+                let [one, minus, zero] = [1, -1, 0].map(|n| self.integer(n));
+                let opposite = self.negative(x);
+                let below = self.where_positive(opposite, [minus, zero]);
+                self.where_positive(x, [one, below])
+            }
+            ("min", &[a, b]) => {
+                let margin = self.difference(b, a);
+                self.where_positive(margin, [a, b])
+            }
+            ("max", &[a, b]) => {
+                let margin = self.difference(b, a);
+                self.where_positive(margin, [b, a])
+            }
+            ("hypot", &[a, b]) => self.hypot(a, b),
+            ("mod", &[a, b]) => {
+                let quotient = self.quotient(a, b);
+                let whole = self.call(Function::Floor, [quotient; 2]);
+                let taken = self.product(b, whole);
+                self.difference(a, taken)
+            }
+            ("step", &[x, x0, y0, x1, y1]) => self.step(x, [x0, y0], [x1, y1]),
+            ("ramp", &[z, width]) => {
+                let root = self.hypot(z, width);
+                let (double, half) = (self.sum(z, root), self.exact(Rational::new(1.into(), 2.into())));
+                self.product(half, double)
+            }
+            (name, operands) => {
+                let function = Function::named(name).expect("the table has no other functions");
+                self.call(function, [operands[0], operands[operands.len() - 1]])
+            }
+        }
+    }
+
+    /// √(1 − x²), the other leg of a triangle over 1.
+    fn other_side(&mut self, x: usize) -> usize {
+        let one = self.integer(1);
+        let (less, more) = (self.difference(one, x), self.sum(one, x));
+        let square = self.product(less, more);
+        self.call(Function::Sqrt, [square; 2])
+    }
+
+    fn cosh(&mut self, x: usize) -> usize {
+        let opposite = self.negative(x);
+        let [rising, falling] = [x, opposite].map(|x| self.call(Function::Exp, [x; 2]));
+        let (sum, two) = (self.sum(rising, falling), self.integer(2));
+        self.quotient(sum, two)
+    }
+
+    fn hypot(&mut self, a: usize, b: usize) -> usize {
+        let [a, b] = [a, b].map(|x| self.product(x, x));
+        let sum = self.sum(a, b);
+        self.call(Function::Sqrt, [sum; 2])
+    }
+
+    /// From y0 to y1 by the cubic `y0 + (y1 − y0) s² (3 − 2 s)` of `s = (x − x0) / (x1 − x0)`, and constant beyond.
+    fn step(&mut self, x: usize, [x0, y0]: [usize; 2], [x1, y1]: [usize; 2]) -> usize {
+        let (from, width) = (self.difference(x, x0), self.difference(x1, x0));
+        let s = self.quotient(from, width);
+        let [zero, one, two, three] = [0, 1, 2, 3].map(|n| self.integer(n));
+        let rest = self.difference(one, s);
+        let upper = self.where_positive(rest, [s, one]);
+        let s = self.where_positive(s, [upper, zero]);
+        let (square, double) = (self.product(s, s), self.product(two, s));
+        let slope = self.difference(three, double);
+        let part = self.product(square, slope);
+        let rise = self.difference(y1, y0);
+        let risen = self.product(rise, part);
+        self.sum(y0, risen)
+    }
+}
+
+fn ln_10() -> Rational {
+    parse_decimal(LN_10).expect("a decimal")
+}

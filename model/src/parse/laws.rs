@@ -1,0 +1,104 @@
+//! Strengths of forces: formulas of coordinates, rates, time, inputs and of outputs of position and velocity.
+
+use std::sync::Arc;
+
+use super::computed::Fault;
+use super::formulas::Named;
+use super::numbers::{named, wrong_within};
+use super::reader::Reader;
+use super::section::Item;
+use super::seen::Known;
+use super::{names, seen};
+use crate::{Number, Operation, OutputKind, Seen};
+
+/// What a link's own formula calls the distance of its ends, and the rate of that.
+const LENGTHS: [(&str, Seen); 2] = [("length", Seen::Length), ("length rate", Seen::LengthRate)];
+
+/// The strength that a text denotes.
+pub(super) fn strength(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Number> {
+    let known = known(reader, item);
+    let kinds = reader.outputs.clone();
+    let refuse = |name: &str, seen: Seen| refused(&kinds, name, seen);
+    match with_names(reader, &known, Inputs::Known, &refuse, |named| named.formula(text)) {
+        Ok(formula) => Some(match formula.operations.as_slice() {
+            [Operation::Number(number)] => number.clone(),
+            _ => Number::Formula(Arc::new(formula)),
+        }),
+        Err(_) if is_name(text) => {
+            seen::named(reader, item, text, &known);
+            None
+        }
+        Err(fault) => {
+            wrong_within(reader, item, text, fault);
+            None
+        }
+    }
+}
+
+/// Whether a name in place of a strength is one of what moves.
+pub(super) fn is_meant(reader: &Reader<'_>, item: Item<'_>, name: &str) -> bool {
+    let known = known(reader, item);
+    name == "t"
+        || reader.has_joint(name)
+        || names::column(name, known.iter().map(|(known, _)| known.as_str())).is_some()
+}
+
+/// What a formula under a key may name.
+fn known(reader: &Reader<'_>, item: Item<'_>) -> Known {
+    let own = LENGTHS.iter().filter(|_| item.key.name == "tension");
+    let own = own.map(|(name, seen)| ((*name).to_owned(), *seen));
+    own.chain(reader.visible.iter().cloned()).collect()
+}
+
+/// Forces are known before accelerations are: outputs of these are nothing that a force may depend on.
+fn refused(kinds: &[OutputKind], name: &str, seen: Seen) -> Option<[String; 3]> {
+    let Seen::Output { output, number } = seen else { return None };
+    let is_early = match kinds.get(output)? {
+        OutputKind::Pose(_) | OutputKind::Velocity(_) => true,
+        OutputKind::Inertial(_) => number >= 3,
+        OutputKind::Link { .. } => number == 1,
+        _ => false,
+    };
+    (!is_early).then(|| {
+        [
+            format!("a force cannot depend on `{name}`"),
+            "known only once all forces are".to_owned(),
+            "name a joint coordinate, its rate, or a number of an output of position or velocity; an [[output]] \
+             tells accelerations and reactions"
+                .to_owned(),
+        ]
+    })
+}
+
+/// Whether a text is a single name, with blanks and dots as columns have them.
+pub(super) fn is_name(text: &str) -> bool {
+    let is_part = |c: char| c.is_alphanumeric() || "_.- ".contains(c);
+    text.chars().all(is_part) && !text.starts_with(|c: char| c.is_ascii_digit()) && !text.contains(" - ")
+}
+
+/// Whether a formula may name inputs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Inputs {
+    Known,
+    Unknown,
+}
+
+/// What reads a formula, with the names that the model file gives to numbers.
+pub(super) fn with_names<T>(
+    reader: &Reader<'_>,
+    columns: &Known,
+    inputs: Inputs,
+    refuse: &dyn Fn(&str, Seen) -> Option<[String; 3]>,
+    read: impl FnOnce(&Named<'_>) -> Result<T, Fault>,
+) -> Result<T, Fault> {
+    let inputs: &[String] = if inputs == Inputs::Known { &reader.inputs } else { &[] };
+    let input = |name: &str| {
+        let index = inputs.iter().position(|input| input == name);
+        index.map(|index| Number::Input { index, negated: false })
+    };
+    let number = |name: &str| named(reader, name).or_else(|| input(name));
+    let derived = reader.derived.iter().map(|(name, _)| name);
+    let numbers: Vec<&str> =
+        reader.parameters.iter().chain(derived).chain(inputs).map(String::as_str).collect();
+    read(&Named { columns, number: &number, numbers: &numbers, formulas: &reader.formulas, refuse })
+}
