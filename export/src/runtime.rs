@@ -30,6 +30,10 @@ const ELEMENTARY: &[Part] = &[
     part!("atan", "atan.c", ["base"]),
     part!("libm_atan2", "atan2.c", ["atan"]),
     part!("libm_pow", "pow.c", ["libm_scalbn"]),
+    part!("libm_exp", "exp.c", ["libm_scalbn"]),
+    part!("libm_log", "log.c", []),
+    part!("gyro_when", "../choice/when.c", []),
+    part!("gyro_unless", "../choice/unless.c", []),
     part!("libm_round", "round.c", []),
     part!("k_sin_cos_f32", "k_sin_cos_f32.c", ["base_f32", "rem_pio2_large"]),
     part!("libm_sinf", "sin_f32.c", ["k_sin_cos_f32"]),
@@ -41,6 +45,11 @@ const ELEMENTARY: &[Part] = &[
     part!("libm_tanhf", "tanh_f32.c", ["expm1_f32"]),
     part!("atan_f32", "atan_f32.c", ["base_f32"]),
     part!("libm_atan2f", "atan2_f32.c", ["atan_f32"]),
+    part!("libm_scalbnf", "scalbn_f32.c", []),
+    part!("libm_expf", "exp_f32.c", ["base_f32", "libm_scalbnf"]),
+    part!("libm_logf", "log_f32.c", []),
+    part!("gyro_whenf", "../choice/when_f32.c", []),
+    part!("gyro_unlessf", "../choice/unless_f32.c", []),
     part!("libm_roundf", "round_f32.c", []),
 ];
 

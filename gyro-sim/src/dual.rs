@@ -80,6 +80,10 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
     fn call(function: Elementary, operands: [Self; 2]) -> Self {
         let ([x, y], given) = (operands, operands.map(|operand| operand.value));
         let value = T::call(function, given);
+        if matches!(function, Elementary::When | Elementary::Unless) {
+            // What is not chosen may change infinitely fast.
+            return y.with(y, value, |slope, _| T::call(function, [x.value, slope]));
+        }
         match function.slopes(given, value) {
             (by_x, None) => x.chain(value, by_x),
             (by_x, Some(by_y)) => x.with(y, value, |dx, dy| by_x * dx + by_y * dy),

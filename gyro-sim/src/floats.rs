@@ -1,7 +1,7 @@
 //! `f64` and `f32` as number types, and as packs of one lane.
 
 use crate::scalar::{Elementary, Lanes, Real, Scalar};
-use crate::{charts, fused, sine, spline};
+use crate::{charts, fused, scalar, sine, spline};
 
 impl<T: Real> Lanes for T {
     type Lane = Self;
@@ -72,6 +72,12 @@ impl Scalar for f64 {
             Elementary::Cos => libm::cos(x),
             Elementary::Tanh => libm::tanh(x),
             Elementary::Atan2 => libm::atan2(x, y),
+            Elementary::Exp => libm::exp(x),
+            Elementary::Ln => libm::log(x),
+            Elementary::Abs => libm::fabs(x),
+            Elementary::Floor => libm::floor(x),
+            Elementary::When => scalar::when([x, y]),
+            Elementary::Unless => scalar::unless([x, y]),
         }
     }
     #[inline]
@@ -86,10 +92,6 @@ impl Scalar for f64 {
 
 impl Real for f64 {
     const EPSILON: Self = Self::EPSILON;
-    #[inline]
-    fn abs(self) -> Self {
-        libm::fabs(self)
-    }
     #[inline]
     fn round(self) -> Self {
         libm::round(self)
@@ -122,6 +124,12 @@ impl Scalar for f32 {
             Elementary::Cos => sine::cos_of_any(x),
             Elementary::Tanh => libm::tanhf(x),
             Elementary::Atan2 => libm::atan2f(x, y),
+            Elementary::Exp => libm::expf(x),
+            Elementary::Ln => libm::logf(x),
+            Elementary::Abs => libm::fabsf(x),
+            Elementary::Floor => libm::floorf(x),
+            Elementary::When => scalar::when([x, y]),
+            Elementary::Unless => scalar::unless([x, y]),
         }
     }
     #[inline]
@@ -137,10 +145,6 @@ impl Scalar for f32 {
 
 impl Real for f32 {
     const EPSILON: Self = Self::EPSILON;
-    #[inline]
-    fn abs(self) -> Self {
-        libm::fabsf(self)
-    }
     #[inline]
     fn round(self) -> Self {
         libm::roundf(self)

@@ -64,6 +64,44 @@ pub trait Scalar:
     fn atan2(self, x: Self) -> Self {
         Self::call(Elementary::Atan2, [self, x])
     }
+    /// The exponential function, `eˣ`.
+    #[inline(always)]
+    #[must_use]
+    fn exp(self) -> Self {
+        Self::call(Elementary::Exp, [self; 2])
+    }
+    /// Natural logarithm: minus infinity of zero, NaN of what is negative.
+    #[inline(always)]
+    #[must_use]
+    fn ln(self) -> Self {
+        Self::call(Elementary::Ln, [self; 2])
+    }
+    /// Absolute value. Its derivative is −1, 0 or 1, at zero 0.
+    #[inline(always)]
+    #[must_use]
+    fn abs(self) -> Self {
+        Self::call(Elementary::Abs, [self; 2])
+    }
+    /// The largest whole number that is not larger. Its derivative is zero everywhere.
+    #[inline(always)]
+    #[must_use]
+    fn floor(self) -> Self {
+        Self::call(Elementary::Floor, [self; 2])
+    }
+    /// `x` where this number is greater than zero, 0 where it is at most zero, and NaN where it is NaN. Where `x` is not
+    /// taken it may be infinite or NaN, and its derivative, too.
+    #[inline(always)]
+    #[must_use]
+    fn when(self, x: Self) -> Self {
+        Self::call(Elementary::When, [self, x])
+    }
+    /// `x` where this number is at most zero, 0 where it is greater than zero, and NaN where it is NaN: what
+    /// [`when`](Self::when) leaves, so that `c.when(x) + c.unless(y)` is `x` or `y`.
+    #[inline(always)]
+    #[must_use]
+    fn unless(self, x: Self) -> Self {
+        Self::call(Elementary::Unless, [self, x])
+    }
 }
 
 /// An elementary function, for number types that treat most of them alike. There will be more.
@@ -80,10 +118,23 @@ pub enum Elementary {
     Tanh,
     /// The angle of the point (second operand, first operand).
     Atan2,
+    /// The exponential function.
+    Exp,
+    /// Natural logarithm.
+    Ln,
+    /// Absolute value.
+    Abs,
+    /// The largest whole number that is not larger.
+    Floor,
+    /// The second operand where the first one is greater than zero, elsewhere zero.
+    When,
+    /// The second operand where the first one is at most zero, elsewhere zero.
+    Unless,
 }
 
 impl Elementary {
-    /// The derivatives by the operands, the second one of functions of two, where the function has this value.
+    /// The derivatives by the operands, the second one of functions of two, where the function has this value. By what
+    /// a condition chooses it is one or zero, which nothing is to be multiplied by: where it is not chosen it may change infinitely fast.
     #[inline(always)]
     pub(crate) fn slopes<T: Scalar>(self, [x, y]: [T; 2], value: T) -> (T, Option<T>) {
         match self {
@@ -95,17 +146,33 @@ impl Elementary {
                 let square = x * x + y * y;
                 (y / square, Some(-x / square))
             }
+            Self::Exp => (value, None),
+            Self::Ln => (T::constant(1.0) / x, None),
+            Self::Abs => (x.when(T::constant(1.0)) - (-x).when(T::constant(1.0)), None),
+            Self::Floor => (T::constant(0.0), None),
+            Self::When | Self::Unless => (T::constant(0.0), Some(T::call(self, [x, T::constant(1.0)]))),
         }
     }
+}
+
+/// The second number where the first one is greater than zero; zero, or NaN, where it is not.
+#[inline(always)]
+pub(crate) fn when<T: Lanes>([condition, x]: [T; 2]) -> T {
+    let zero = T::constant(0.0);
+    T::select(condition.greater(zero), x, T::select(condition.at_most(zero), zero, condition))
+}
+
+/// The second number where the first one is at most zero; zero, or NaN, where it is not.
+#[inline(always)]
+pub(crate) fn unless<T: Lanes>([condition, x]: [T; 2]) -> T {
+    let zero = T::constant(0.0);
+    T::select(condition.at_most(zero), x, T::select(condition.greater(zero), zero, condition))
 }
 
 /// A scalar that can be compared, as solvers need it.
 pub trait Real: Scalar + PartialOrd {
     /// Distance from one to the next larger number.
     const EPSILON: Self;
-    /// Absolute value.
-    #[must_use]
-    fn abs(self) -> Self;
     /// The nearest integer.
     #[must_use]
     fn round(self) -> Self;

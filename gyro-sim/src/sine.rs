@@ -7,7 +7,7 @@
 //! in the last place from the correctly rounded one (the example `sines` goes through all arguments); beyond, where
 //! whoever turns so far has lost the angle's digits, libm's function serves, which reduces in double precision.
 
-use crate::{Lanes, Real};
+use crate::{Lanes, Scalar};
 use core::f64::consts::FRAC_2_PI;
 
 /// The largest argument that is reduced here.
@@ -44,13 +44,13 @@ struct Reduced<V> {
 /// Sine of any number.
 #[inline]
 pub(crate) fn sin_of_any(x: f32) -> f32 {
-    if Real::abs(x) <= LARGEST as f32 { sin(x) } else { libm::sinf(x) }
+    if Scalar::abs(x) <= LARGEST as f32 { sin(x) } else { libm::sinf(x) }
 }
 
 /// Cosine of any number.
 #[inline]
 pub(crate) fn cos_of_any(x: f32) -> f32 {
-    if Real::abs(x) <= LARGEST as f32 { cos(x) } else { libm::cosf(x) }
+    if Scalar::abs(x) <= LARGEST as f32 { cos(x) } else { libm::cosf(x) }
 }
 
 /// Sine, for arguments up to [`LARGEST`].

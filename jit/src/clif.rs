@@ -255,6 +255,7 @@ impl Writer<'_, '_> {
             Operation::Fused(a, b, c) if IS_FUSED => self.builder.ins().fma(at(a), at(b), at(c)),
             Operation::Fused(a, b, c) => self.rounded_twice(tape, [*a, *b, *c], values),
             Operation::Call(Function::Sqrt, [a, _]) => self.builder.ins().sqrt(at(a)),
+            Operation::Call(Function::Abs, [a, _]) => self.builder.ins().fabs(at(a)),
             Operation::Call(Function::Sin, [a, _]) => self.sine_or_cosine(tape, (*a, Function::Sin), at(a)),
             Operation::Call(Function::Cos, [a, _]) => self.sine_or_cosine(tape, (*a, Function::Cos), at(a)),
             Operation::Call(function, operands) => {

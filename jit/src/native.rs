@@ -51,6 +51,12 @@ functions! {
     Cos: cos(x),
     Tanh: tanh(x),
     Atan2: atan2(x, y),
+    Exp: exp(x),
+    Ln: ln(x),
+    Abs: abs(x),
+    Floor: floor(x),
+    When: when(x, y),
+    Unless: unless(x, y),
 }
 
 /// Sine and cosine, which come back in two registers.

@@ -14,6 +14,19 @@ pub enum Function {
     Tanh,
     /// The angle of the point (second operand, first operand), in (−π, π].
     Atan2,
+    /// The exponential function.
+    Exp,
+    /// Natural logarithm.
+    Ln,
+    /// Absolute value.
+    Abs,
+    /// The largest whole number that is not larger.
+    Floor,
+    /// The second operand where the first one is greater than zero, and zero where it is not; NaN where that is NaN.
+    /// The operand that is not taken may be infinite or NaN.
+    When,
+    /// The second operand where the first one is at most zero, and zero where it is greater; NaN where that is NaN.
+    Unless,
 }
 
 /// What becomes of a function when the sign of its first operand changes.
@@ -44,7 +57,19 @@ pub struct Properties {
 
 impl Function {
     /// All functions, in their order.
-    pub const ALL: [Self; 5] = [Self::Sqrt, Self::Sin, Self::Cos, Self::Tanh, Self::Atan2];
+    pub const ALL: [Self; 11] = [
+        Self::Sqrt,
+        Self::Sin,
+        Self::Cos,
+        Self::Tanh,
+        Self::Atan2,
+        Self::Exp,
+        Self::Ln,
+        Self::Abs,
+        Self::Floor,
+        Self::When,
+        Self::Unless,
+    ];
 
     /// Its row of the table.
     #[rustfmt::skip]
@@ -56,6 +81,12 @@ impl Function {
             Self::Cos => ("cos", ["libm_cos", "gyro_cosf"], 1, Even, Some(1)),
             Self::Tanh => ("tanh", ["libm_tanh", "libm_tanhf"], 1, Odd, Some(0)),
             Self::Atan2 => ("atan2", ["libm_atan2", "libm_atan2f"], 2, Odd, None),
+            Self::Exp => ("exp", ["libm_exp", "libm_expf"], 1, Neither, Some(1)),
+            Self::Ln => ("ln", ["libm_log", "libm_logf"], 1, Neither, None),
+            Self::Abs => ("abs", ["fabs", "fabsf"], 1, Even, Some(0)),
+            Self::Floor => ("floor", ["floor", "floorf"], 1, Neither, Some(0)),
+            Self::When => ("when", ["gyro_when", "gyro_whenf"], 2, Neither, None),
+            Self::Unless => ("unless", ["gyro_unless", "gyro_unlessf"], 2, Neither, None),
         };
         Properties { name, in_c, arity, parity, at_zero }
     }

@@ -39,6 +39,30 @@ pub trait Atoms<F: Field> {
     fn atan2(&self, y: &F, x: &F) -> F {
         self.call(Function::Atan2, [y, x])
     }
+    /// The exponential function.
+    fn exp(&self, x: &F) -> F {
+        self.call(Function::Exp, [x, x])
+    }
+    /// Natural logarithm.
+    fn ln(&self, x: &F) -> F {
+        self.call(Function::Ln, [x, x])
+    }
+    /// Absolute value.
+    fn abs(&self, x: &F) -> F {
+        self.call(Function::Abs, [x, x])
+    }
+    /// The largest whole number that is not larger.
+    fn floor(&self, x: &F) -> F {
+        self.call(Function::Floor, [x, x])
+    }
+    /// `x` where the condition is greater than zero, zero where it is not.
+    fn when(&self, condition: &F, x: &F) -> F {
+        self.call(Function::When, [condition, x])
+    }
+    /// `x` where the condition is at most zero, zero where it is greater.
+    fn unless(&self, condition: &F, x: &F) -> F {
+        self.call(Function::Unless, [condition, x])
+    }
     /// Square root.
     fn sqrt(&self, x: &F) -> F {
         self.call(Function::Sqrt, [x, x])

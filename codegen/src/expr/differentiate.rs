@@ -56,6 +56,10 @@ impl<'a> Derivative<'a> {
             }
             // atan2(y, x)' = (x y' − y x') / (x² + y²)
             Node::Call(Function::Atan2, [y, x]) => angle_rate(graph, (y, x), (self.memo[y], self.memo[x])),
+            // What is not taken may change infinitely fast: it must not be multiplied by zero.
+            Node::Call(function @ (Function::When | Function::Unless), [condition, taken]) => {
+                graph.call(function, [condition, self.memo[taken]])
+            }
             // f(a, b)' = f_a a' + f_b b'
             Node::Call(function, operands) => {
                 let slopes = elementary::slopes(graph, function, operands, id);
@@ -90,29 +94,64 @@ impl<'a> Derivative<'a> {
 /// The derivatives of one expression by some symbols, from the expression inwards: each operation on the way is met
 /// once, not once for each symbol. Every symbol is constant but these, and the tables that time moves.
 pub fn gradient(graph: &mut Graph, root: ExprId, by: &[Symbol]) -> Vec<ExprId> {
-    let mut slopes: HashMap<ExprId, ExprId> = HashMap::from_iter([(root, Graph::ONE)]);
-    let mut of_symbols: HashMap<Symbol, ExprId> = HashMap::default();
-    for id in graph.reachable(&[root]).into_iter().rev() {
-        let slope = slopes.remove(&id).expect("whoever uses an expression comes after it");
-        let (symbol, factor) = match *graph.node(id) {
-            Node::Symbol(Symbol::Table { table, order }) => {
-                (Symbol::Time, graph.symbol(Symbol::Table { table, order: order + 1 }))
-            }
-            Node::Symbol(symbol) => (symbol, Graph::ONE),
-            _ => {
-                for (operand, factor) in factors(graph, id) {
-                    let product = graph.mul(slope, factor);
-                    let sum = slopes.get(&operand).copied().unwrap_or(Graph::ZERO);
-                    slopes.insert(operand, graph.add(sum, product));
+    Gradients { by, taken: HashMap::default() }.of(graph, root)
+}
+
+/// Gradients by the same symbols.
+struct Gradients<'a> {
+    by: &'a [Symbol],
+    /// Of each expression that a condition chooses, where it is chosen.
+    taken: HashMap<ExprId, Vec<ExprId>>,
+}
+
+impl Gradients<'_> {
+    fn of(&mut self, graph: &mut Graph, root: ExprId) -> Vec<ExprId> {
+        let mut slopes: HashMap<ExprId, ExprId> = HashMap::from_iter([(root, Graph::ONE)]);
+        let mut of_symbols: HashMap<Symbol, ExprId> = HashMap::default();
+        let mut of_choices = vec![Graph::ZERO; self.by.len()];
+        for id in graph.reachable(&[root]).into_iter().rev() {
+            // Nothing flows into conditions, and into what they choose not from here.
+            let Some(slope) = slopes.remove(&id) else { continue };
+            let (symbol, factor) = match *graph.node(id) {
+                Node::Symbol(Symbol::Table { table, order }) => {
+                    (Symbol::Time, graph.symbol(Symbol::Table { table, order: order + 1 }))
                 }
-                continue;
-            }
-        };
-        let product = graph.mul(slope, factor);
-        let sum = of_symbols.get(&symbol).copied().unwrap_or(Graph::ZERO);
-        of_symbols.insert(symbol, graph.add(sum, product));
+                Node::Symbol(symbol) => (symbol, Graph::ONE),
+                Node::Call(function @ (Function::When | Function::Unless), [condition, taken]) => {
+                    for (sum, by) in of_choices.iter_mut().zip(self.of_taken(graph, taken)) {
+                        let by = graph.call(function, [condition, by]);
+                        let product = graph.mul(slope, by);
+                        *sum = graph.add(*sum, product);
+                    }
+                    continue;
+                }
+                _ => {
+                    for (operand, factor) in factors(graph, id) {
+                        let product = graph.mul(slope, factor);
+                        let sum = slopes.get(&operand).copied().unwrap_or(Graph::ZERO);
+                        slopes.insert(operand, graph.add(sum, product));
+                    }
+                    continue;
+                }
+            };
+            let product = graph.mul(slope, factor);
+            let sum = of_symbols.get(&symbol).copied().unwrap_or(Graph::ZERO);
+            of_symbols.insert(symbol, graph.add(sum, product));
+        }
+        let of_symbol = |symbol| of_symbols.get(symbol).copied().unwrap_or(Graph::ZERO);
+        self.by.iter().zip(of_choices).map(|(symbol, sum)| graph.add(of_symbol(symbol), sum)).collect()
     }
-    by.iter().map(|symbol| of_symbols.get(symbol).copied().unwrap_or(Graph::ZERO)).collect()
+
+    /// The gradient of what a condition chooses, by itself: a slope that came from outside would be zero where it is
+    /// not chosen, and zero times infinity is no zero.
+    fn of_taken(&mut self, graph: &mut Graph, taken: ExprId) -> Vec<ExprId> {
+        if let Some(known) = self.taken.get(&taken) {
+            return known.clone();
+        }
+        let gradient = self.of(graph, taken);
+        self.taken.insert(taken, gradient.clone());
+        gradient
+    }
 }
 
 /// The operands of an expression, each with the derivative of the expression by it.

@@ -255,6 +255,11 @@ impl Graph {
                     return self.constant(root);
                 }
             }
+            (Function::Abs | Function::Floor | Function::When | Function::Unless, ..) => {
+                if let Some(known) = self.known(function, operands) {
+                    return known;
+                }
+            }
             _ => {}
         }
         // The signs of points move outwards when a tape is made.
@@ -264,6 +269,22 @@ impl Graph {
         let (is_negative, x) = self.split_sign(operands[0]);
         let value = self.intern(Node::Call(function, [x, x]));
         if is_negative && parity == Parity::Odd { self.neg(value) } else { value }
+    }
+
+    /// What is exact of constants: where they lie, and what a constant condition chooses.
+    fn known(&mut self, function: Function, [a, b]: [ExprId; 2]) -> Option<ExprId> {
+        let constant = self.as_constant(a).cloned();
+        match function {
+            Function::Abs => Some(self.constant(constant?.abs())),
+            Function::Floor => Some(self.constant(constant?.floor()?)),
+            Function::When | Function::Unless if b == Self::ZERO => Some(Self::ZERO),
+            Function::When | Function::Unless => {
+                let constant = constant?;
+                let is_positive = !constant.is_zero() && !constant.is_negative();
+                Some(if is_positive == (function == Function::When) { b } else { Self::ZERO })
+            }
+            _ => None,
+        }
     }
 
     pub fn sqrt(&mut self, a: ExprId) -> ExprId {
@@ -285,6 +306,11 @@ impl Graph {
     /// The angle of the point (x, y), in (−π, π].
     pub fn atan2(&mut self, y: ExprId, x: ExprId) -> ExprId {
         self.call(Function::Atan2, [y, x])
+    }
+
+    /// x where the condition is greater than zero, and zero where it is not.
+    pub fn when(&mut self, condition: ExprId, x: ExprId) -> ExprId {
+        self.call(Function::When, [condition, x])
     }
 
     /// `c · x`, the sign outermost.
@@ -406,6 +432,31 @@ impl Graph {
         });
         nodes.push(node);
         id
+    }
+}
+
+#[cfg_attr(not(test), expect(dead_code, reason = "formulas are to call them"))]
+impl Graph {
+    pub fn exp(&mut self, a: ExprId) -> ExprId {
+        self.call(Function::Exp, [a, a])
+    }
+
+    /// Natural logarithm.
+    pub fn ln(&mut self, a: ExprId) -> ExprId {
+        self.call(Function::Ln, [a, a])
+    }
+
+    pub fn abs(&mut self, a: ExprId) -> ExprId {
+        self.call(Function::Abs, [a, a])
+    }
+
+    pub fn floor(&mut self, a: ExprId) -> ExprId {
+        self.call(Function::Floor, [a, a])
+    }
+
+    /// x where the condition is at most zero, and zero where it is greater.
+    pub fn unless(&mut self, condition: ExprId, x: ExprId) -> ExprId {
+        self.call(Function::Unless, [condition, x])
     }
 }
 

@@ -9,6 +9,7 @@ use crate::expr::by_expr::ByExpr;
 use crate::expr::domains::{POINTS, mix};
 use crate::expr::elementary;
 use crate::expr::graph::{ExprId, Graph, Node};
+use gyro_program::elementary::Function;
 
 /// How many samples an error is made of.
 const LANES: usize = 8;
@@ -119,6 +120,7 @@ impl<'g> Step<'g> {
             Node::Constant(constant) => constant.is_double(),
             Node::Symbol(_) | Node::Neg(_) => true,
             Node::Mul(a, b) => scales(*a) || scales(*b),
+            Node::Call(Function::Abs | Function::Floor, _) => true,
             _ => false,
         };
         let bits = mix(id.place() as u64);
@@ -135,6 +137,11 @@ impl<'g> Step<'g> {
         let none = Rounded { value: 0.0, errors: [0.0; LANES] };
         let [a, b] = self.operands.map(|place| values.get(place).unwrap_or(&none));
         let (x, y) = (a.value, b.value);
+        // What is not taken may be infinite, and its error, too.
+        if let Node::Call(function @ (Function::When | Function::Unless), _) = *self.node {
+            let taken = |of| elementary::value(function, [x, of]);
+            return Rounded { value: taken(y), errors: b.errors.map(taken) };
+        }
         // The value, and its derivatives by both operands.
         let (value, [by_a, by_b]) = match self.node {
             Node::Constant(_) => (self.constant, [0.0, 0.0]),

@@ -10,6 +10,7 @@
 #define fabs(x) __builtin_fabs(x)
 #define fabsf(x) __builtin_fabsf(x)
 #define floor(x) __builtin_floor(x)
+#define floorf(x) __builtin_floorf(x)
 
 /* Of a number and something that is none, the number. */
 static inline double fmax(double a, double b) { return b != b || a > b ? a : b; }

@@ -12,9 +12,9 @@
 //!
 //! # Lanes against scalar runs
 //! Each lane computes, *bit for bit*, what a run with its numbers alone computes in `f64` or `f32`. Sine and cosine of
-//! `f64` are libm's, operation by operation (see `lanes/sine.rs`), and so are square roots; hyperbolic tangents, arc
-//! tangents and tables are left to libm, lane after lane, which is exact and slow. A lane that fails keeps the state in
-//! which it failed, and its error; it does not disturb the others.
+//! `f64` are libm's, operation by operation (see `lanes/sine.rs`), and so are square roots; absolute values and choices
+//! are instructions. All other functions and tables are left to libm, lane after lane, which is exact and slow. A lane
+//! that fails keeps the state in which it failed, and its error; it does not disturb the others.
 //!
 //! # Speed
 //! Packs gain only where the target has registers for them: `-C target-cpu=native`, or x86-64-v3 and v4.

@@ -2,7 +2,7 @@
 
 use super::{chart, sine};
 use crate::fused::IS_FUSED;
-use crate::{Elementary, Lanes, Scalar};
+use crate::{Elementary, Lanes, Scalar, scalar};
 use wide::{f32x8, f64x2, f64x4, f64x8};
 
 /// A function that is left to libm, lane after lane.
@@ -27,6 +27,9 @@ macro_rules! pack {
                     Elementary::Sqrt => Self::sqrt(operands[0]),
                     Elementary::Sin => $sin(operands[0]),
                     Elementary::Cos => $cos(operands[0]),
+                    Elementary::Abs => Self::abs(operands[0]),
+                    Elementary::When => scalar::when(operands),
+                    Elementary::Unless => scalar::unless(operands),
                     _ => each(operands, |operands| Scalar::call(function, operands)),
                 }
             }

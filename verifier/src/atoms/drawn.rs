@@ -5,14 +5,18 @@ use super::elementary::{Symmetry, symmetry};
 use crate::field::{Field, Modular, Prime};
 use crate::program::Function;
 use chacha20::ChaCha8Rng;
-use gyro_model::Spline;
+use gyro_model::{Rational, Spline};
+use num_traits::Signed;
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::hash::Hash;
 
 /// Atoms over integers modulo a prime. What the functions are known to satisfy, the values do: `sin² + cos² = 1`, the
 /// double angle, sine, tanh and atan2 (in its first argument) are odd and cosine even, `√x² = x` and `√x √y = √(x y)`.
-/// Also `atan2(0, x) = 0`, which holds if x is positive: that it is must be seen elsewhere.
+/// Also `atan2(0, x) = 0`, which holds if x is positive: that it is must be seen elsewhere. `exp(0) = 1` and
+/// `exp(x) exp(−x) = 1`; absolute values are even. A condition is a number that is drawn for it and that `when`
+/// multiplies by, and `unless` by what it lacks of one: an identity that holds for all numbers holds for zero and one.
+/// Of small fractions absolute values, whole numbers and conditions are what they are.
 #[derive(Debug)]
 pub struct Drawn<'p, const L: usize> {
     prime: &'p Prime<L>,
@@ -106,6 +110,34 @@ impl<'p, const L: usize> Drawn<'p, L> {
         if is_negated && symmetry == Symmetry::Odd { value.neg() } else { value }
     }
 
+    /// One for each argument and its negative, of which one is the reciprocal of the other.
+    fn exponential(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
+        let undefined = Modular::undefined(self.prime);
+        if x.is_zero() {
+            return Modular::one(self.prime);
+        }
+        let Some((key, is_negated)) = unsigned(x) else { return undefined };
+        let value = self.value(&self.others, Some((Function::Exp, key, None)));
+        if is_negated { value.inv().unwrap_or(undefined) } else { value }
+    }
+
+    /// What is known of a small fraction, and otherwise no more than what a sign does.
+    fn known_or_other(&self, function: Function, x: &Modular<'p, L>) -> Modular<'p, L> {
+        let exact = |x: Rational| if function == Function::Abs { x.abs() } else { x.floor() };
+        match x.small_fraction() {
+            Some(x) => Modular::from_rational(self.prime, &exact(x)),
+            None => self.other(function, [x, x]),
+        }
+    }
+
+    /// What stands for the truth of `x > 0`.
+    fn condition(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
+        match x.small_fraction() {
+            Some(x) => Modular::integer(self.prime, x.is_positive().into()),
+            None => self.value(&self.others, x.key().map(|key| (Function::When, key, None))),
+        }
+    }
+
     /// Where there is no root, any number in its place.
     fn root(&self, x: &Modular<'p, L>) -> Modular<'p, L> {
         x.sqrt().unwrap_or_else(|| {
@@ -143,12 +175,16 @@ fn unsigned<const L: usize>(x: &Modular<'_, L>) -> Option<([u64; L], bool)> {
 }
 
 impl<'p, const L: usize> Atoms<Modular<'p, L>> for Drawn<'p, L> {
-    fn call(&self, function: Function, operands: [&Modular<'p, L>; 2]) -> Modular<'p, L> {
+    fn call(&self, function: Function, [x, y]: [&Modular<'p, L>; 2]) -> Modular<'p, L> {
         match function {
-            Function::Sin => self.point(operands[0]).1,
-            Function::Cos => self.point(operands[0]).0,
-            Function::Sqrt => self.root(operands[0]),
-            _ => self.other(function, operands),
+            Function::Sin => self.point(x).1,
+            Function::Cos => self.point(x).0,
+            Function::Sqrt => self.root(x),
+            Function::Exp => self.exponential(x),
+            Function::Abs | Function::Floor => self.known_or_other(function, x),
+            Function::When => self.condition(x).mul(y),
+            Function::Unless => Modular::one(self.prime).sub(&self.condition(x)).mul(y),
+            Function::Tanh | Function::Atan2 | Function::Ln => self.other(function, [x, y]),
         }
     }
 

@@ -23,17 +23,39 @@ pub(super) enum Symmetry {
 pub(super) fn symmetry(function: Function) -> Symmetry {
     match function {
         Function::Sin | Function::Tanh | Function::Atan2 => Symmetry::Odd,
-        Function::Cos => Symmetry::Even,
-        Function::Sqrt => Symmetry::Neither,
+        Function::Cos | Function::Abs => Symmetry::Even,
+        Function::Sqrt
+        | Function::Exp
+        | Function::Ln
+        | Function::Floor
+        | Function::When
+        | Function::Unless => Symmetry::Neither,
     }
 }
 
+/// Below this an exponential is rounded to zero, or nearly.
+const LEAST_EXPONENT: f64 = -700.0;
+
 /// What a function may be of operands that may be anything in these ranges.
-pub(crate) fn range_of_call(function: Function, [x, _]: [Range; 2]) -> Range {
+pub(crate) fn range_of_call(function: Function, [x, y]: [Range; 2]) -> Range {
     match function {
         Function::Sin | Function::Cos | Function::Tanh => Range::UNIT,
         Function::Sqrt => Range { low: x.low.max(0.0).sqrt(), high: x.high.max(0.0).sqrt(), ..x },
         Function::Atan2 => Range::ANY,
+        Function::Exp => {
+            Range { low: libm::exp(x.low), high: libm::exp(x.high), is_nonzero: x.low > LEAST_EXPONENT }
+        }
+        Function::Ln => {
+            Range { low: libm::log(x.low.max(0.0)), high: libm::log(x.high.max(0.0)), is_nonzero: false }
+        }
+        Function::Abs => Range { low: x.low.max(-x.high).max(0.0), high: x.high.max(-x.low), ..x },
+        Function::Floor => {
+            let is_nonzero = x.low >= 1.0 || x.high < 0.0;
+            Range { low: libm::floor(x.low), high: libm::floor(x.high), is_nonzero }
+        }
+        Function::When | Function::Unless => {
+            Range { low: y.low.min(0.0), high: y.high.max(0.0), is_nonzero: false }
+        }
     }
 }
 
@@ -54,7 +76,26 @@ pub(crate) fn rate_of_call<F: Field>(
             let turned = sum(times(dx, y), times(dy, x).map(|x| x.neg()));
             quotient(turned, &y.mul(y).add(&x.mul(x)))?
         }
+        Function::Exp => times(dx, value),
+        Function::Ln => quotient(dx.cloned(), x)?,
+        // Positive numbers change as they do, negative ones the other way.
+        Function::Abs => dx.map(|dx| atoms.when(x, dx).sub(&atoms.when(&x.neg(), dx))),
+        Function::Floor => None,
+        // What is not taken may change infinitely fast: zero is no factor of it.
+        Function::When | Function::Unless => dy.map(|dy| atoms.call(function, [x, dy])),
     })
+}
+
+/// A choice between numbers that are compared with zero; of what is no number nothing is chosen.
+fn chosen<T: PartialOrd + Default + Copy>(function: Function, condition: T, x: T) -> T {
+    let zero = T::default();
+    let is_positive = condition > zero;
+    match function {
+        _ if !is_positive && !(condition <= zero) => condition,
+        Function::When if is_positive => x,
+        Function::Unless if !is_positive => x,
+        _ => zero,
+    }
 }
 
 /// A sum of which terms may be zero by structure.
@@ -81,6 +122,11 @@ impl Atoms<f64> for Elementary {
             Function::Cos => libm::cos(*x),
             Function::Tanh => libm::tanh(*x),
             Function::Atan2 => libm::atan2(*x, *y),
+            Function::Exp => libm::exp(*x),
+            Function::Ln => libm::log(*x),
+            Function::Abs => libm::fabs(*x),
+            Function::Floor => libm::floor(*x),
+            Function::When | Function::Unless => chosen(function, *x, *y),
         }
     }
 
@@ -97,6 +143,11 @@ impl Atoms<f32> for Elementary {
             Function::Cos => libm::cosf(*x),
             Function::Tanh => libm::tanhf(*x),
             Function::Atan2 => libm::atan2f(*x, *y),
+            Function::Exp => libm::expf(*x),
+            Function::Ln => libm::logf(*x),
+            Function::Abs => libm::fabsf(*x),
+            Function::Floor => libm::floorf(*x),
+            Function::When | Function::Unless => chosen(function, *x, *y),
         }
     }
 
@@ -114,6 +165,12 @@ impl<'c> Atoms<Real<'c>> for Elementary {
             Function::Cos => x.by(BigFloat::cos),
             Function::Tanh => x.by(BigFloat::tanh),
             Function::Atan2 => x.atan2(y),
+            Function::Exp => x.by(BigFloat::exp),
+            Function::Ln => x.by(BigFloat::ln),
+            Function::Abs => x.abs(),
+            Function::Floor => x.floor(),
+            Function::When => x.choose(y, &x.like(0.0)),
+            Function::Unless => x.choose(&x.like(0.0), y),
         }
     }
 

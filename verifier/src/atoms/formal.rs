@@ -1,7 +1,7 @@
 //! Degrees of atoms.
 
 use super::Atoms;
-use crate::field::Degree;
+use crate::field::{Degree, Field};
 use crate::program::Function;
 use gyro_model::Spline;
 
@@ -23,11 +23,16 @@ impl Formal {
 impl Atoms<Degree> for Formal {
     /// The root of a quotient is of half its degrees; they are counted whole. Where there is none, a variable stands
     /// for it.
-    fn call(&self, function: Function, [x, _]: [&Degree; 2]) -> Degree {
+    fn call(&self, function: Function, [x, y]: [&Degree; 2]) -> Degree {
         match function {
             Function::Sin | Function::Cos => self.circle(),
             Function::Sqrt => Degree { numerator_log2: x.numerator_log2.max(0.0), ..*x },
-            _ => Degree::polynomial(1.0),
+            // A variable, or its reciprocal.
+            Function::Exp => Degree::quotient(1.0, 1.0),
+            Function::When | Function::Unless => Degree::polynomial(1.0).mul(y),
+            Function::Tanh | Function::Atan2 | Function::Ln | Function::Abs | Function::Floor => {
+                Degree::polynomial(1.0)
+            }
         }
     }
 

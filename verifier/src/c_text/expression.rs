@@ -165,9 +165,21 @@ impl Reader<'_> {
     }
 }
 
-/// The function that a word names: C's own root, and what a source brings itself, with a last letter for `float`.
+/// The function that a word names: C's own root, absolute value and whole number, and what a source brings itself, with
+/// a last letter for `float`.
 fn function(word: &str) -> Option<Function> {
     let brought = ["libm_", "gyro_"].iter().find_map(|prefix| word.strip_prefix(prefix));
-    let name = brought.or_else(|| word.starts_with("sqrt").then_some(word))?;
-    Function::named(name).or_else(|| Function::named(name.strip_suffix('f')?))
+    let named = |name: &str| match name {
+        "log" => Some(Function::Ln),
+        name => Function::named(name),
+    };
+    let own = |name: &str| match name {
+        "sqrt" => Some(Function::Sqrt),
+        "fabs" => Some(Function::Abs),
+        "floor" => Some(Function::Floor),
+        _ => None,
+    };
+    let of = |name: &str| if brought.is_some() { named(name) } else { own(name) };
+    let name = brought.unwrap_or(word);
+    of(name).or_else(|| of(name.strip_suffix('f')?))
 }

@@ -228,6 +228,7 @@ impl Reader<'_> {
             ["call", function, ref arguments @ ..] => self.called(function, arguments, line)?,
             ["fneg", a] => Node::Neg(self.number(a, line)?),
             ["sqrt", a] => Node::Call(Function::Sqrt, [self.number(a, line)?; 2]),
+            ["fabs", a] => Node::Call(Function::Abs, [self.number(a, line)?; 2]),
             ["fadd", a, b] => Node::Add(self.number(a, line)?, self.number(b, line)?),
             ["fsub", a, b] => Node::Sub(self.number(a, line)?, self.number(b, line)?),
             ["fmul", a, b] => Node::Mul(self.number(a, line)?, self.number(b, line)?),

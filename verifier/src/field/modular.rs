@@ -10,6 +10,9 @@ use gyro_model::Rational;
 use num_bigint::{BigInt, BigUint, Sign};
 use std::fmt;
 
+/// Numerators and denominators of small fractions have at most so many bits, less than a quarter of a prime's.
+const SMALL_BITS: u32 = 120;
+
 /// An integer modulo a prime of at most `64 L − 1` bits.
 #[derive(Clone, Copy)]
 pub struct Modular<'p, const L: usize> {
@@ -40,6 +43,22 @@ impl<'p, const L: usize> Modular<'p, L> {
     pub fn sqrt(&self) -> Option<Self> {
         let root = self.power(self.prime.root_exponent());
         (root.mul(&root) == *self).then_some(root)
+    }
+
+    /// The fraction of small numerator and denominator that this is, if there is one: at most one is, and a number that
+    /// was drawn hardly ever is one. Euclid's algorithm passes by it.
+    pub fn small_fraction(&self) -> Option<Rational> {
+        let small = BigInt::from(1) << SMALL_BITS;
+        let (mut before, mut rest) = (BigInt::from(self.prime.value().clone()), BigInt::from(self.residue()?));
+        let (mut factor_before, mut factor) = (BigInt::from(0), BigInt::from(1));
+        while rest >= small {
+            let quotient = &before / &rest;
+            let next = &before - &quotient * &rest;
+            let next_factor = &factor_before - quotient * &factor;
+            (before, rest) = (rest, next);
+            (factor_before, factor) = (factor, next_factor);
+        }
+        (*factor.magnitude() < *small.magnitude()).then(|| Rational::new(rest, factor))
     }
 
     /// Nothing that equals anything.

@@ -95,6 +95,28 @@ impl<'c> Real<'c> {
         self.with(angle)
     }
 
+    /// Absolute value.
+    #[must_use]
+    pub fn abs(&self) -> Self {
+        self.with(self.value.abs())
+    }
+
+    /// The largest whole number that is not larger.
+    #[must_use]
+    pub fn floor(&self) -> Self {
+        self.with(self.value.floor())
+    }
+
+    /// The first where this one is greater than zero, else the second; where this is no number, neither.
+    #[must_use]
+    pub(crate) fn choose(&self, one: &Self, other: &Self) -> Self {
+        match self.value.cmp(&BigFloat::new(BITS)) {
+            Some(order) if order > 0 => one.clone(),
+            Some(_) => other.clone(),
+            None => self.clone(),
+        }
+    }
+
     /// Whether the number is smaller than another.
     pub fn is_less(&self, other: &Self) -> bool {
         self.value.cmp(&other.value).is_some_and(|order| order < 0)

@@ -48,6 +48,15 @@ impl<F: Field> Jet<F> {
         }
     }
 
+    /// The same linear function of the value and of the derivatives.
+    pub fn each(&self, function: impl Fn(&F) -> F) -> Self {
+        Self {
+            value: function(&self.value),
+            rate: self.rate.as_ref().map(&function),
+            second: self.second.as_ref().map(&function),
+        }
+    }
+
     /// `1 / x`; `None` where x is zero.
     pub fn reciprocal(&self) -> Option<Self> {
         let inverse = self.value.inv()?;

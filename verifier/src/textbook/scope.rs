@@ -113,6 +113,44 @@ impl<'a, F: Field> Scope<'a, F> {
     }
 }
 
+#[cfg_attr(not(test), expect(dead_code, reason = "formulas are to call them"))]
+impl<F: Field> Scope<'_, F> {
+    /// `eˣ`, which is its own derivative.
+    pub fn exp(&self, x: &Jet<F>) -> Jet<F> {
+        let exp = self.atoms.exp(&x.value);
+        x.chain([exp.clone(), exp.clone(), exp])
+    }
+
+    /// The logarithm with `(ln x)' = 1 / x` and `(ln x)'' = −1 / x²`; `None` at zero.
+    pub fn ln(&self, x: &Jet<F>) -> Option<Jet<F>> {
+        let slope = x.value.inv()?;
+        let bend = slope.mul(&slope).neg();
+        Some(x.chain([self.atoms.ln(&x.value), slope, bend]))
+    }
+
+    /// `|x|` with `|x|' = x'` where x is positive and `−x'` where it is negative.
+    pub fn abs(&self, x: &Jet<F>) -> Jet<F> {
+        let (opposite, one) = (x.value.neg(), &self.one.value);
+        let slope = self.atoms.when(&x.value, one).sub(&self.atoms.when(&opposite, one));
+        x.chain([self.atoms.abs(&x.value), slope, self.zero.value.clone()])
+    }
+
+    /// `⌊x⌋`, which does not change but where it jumps.
+    pub fn floor(&self, x: &Jet<F>) -> Jet<F> {
+        Jet::constant(self.atoms.floor(&x.value))
+    }
+
+    /// x and its derivatives where the condition is greater than zero, zero where it is not.
+    pub fn when(&self, condition: &Jet<F>, x: &Jet<F>) -> Jet<F> {
+        x.each(|x| self.atoms.when(&condition.value, x))
+    }
+
+    /// x and its derivatives where the condition is at most zero, zero where it is greater.
+    pub fn unless(&self, condition: &Jet<F>, x: &Jet<F>) -> Jet<F> {
+        x.each(|x| self.atoms.unless(&condition.value, x))
+    }
+}
+
 /// The rationals, if all numbers are.
 fn exact<const N: usize>(numbers: &[Number; N]) -> Option<[Rational; N]> {
     let rational = |number: &Number| match number {
