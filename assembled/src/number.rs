@@ -14,7 +14,7 @@ pub(crate) fn number<T: Number>(value: f64) -> T {
 
 /// Absolute value; both traits have one, as they have the functions below.
 pub(crate) fn abs<T: Number>(value: T) -> T {
-    <T as Real>::abs(value)
+    <T as Scalar>::abs(value)
 }
 
 /// Square root.

@@ -5,7 +5,9 @@ use crate::controllers::seen;
 use crate::failure::Failure;
 use crate::words::{count, number, table};
 use gyro_model::{Direction, Event, Model, Number};
-use gyro_runner::{Formula, Occurrence, Watch, What};
+use gyro_program::elementary::Function;
+use gyro_runner::{Formula, Occurrence, Operation, Watch, What};
+use gyro_sim::Elementary;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -45,20 +47,24 @@ pub(crate) fn watches(model: &Model) -> Vec<Watch> {
 
 /// A formula in numbers.
 fn formula(model: &Model, of: &gyro_model::Formula) -> Formula {
-    use gyro_model::Formula as Of;
-    let one = |a: &Of| Box::new(formula(model, a));
-    let two = |parts: &[Of; 2]| Box::new(parts.each_ref().map(|part| formula(model, part)));
-    match of {
-        Of::Number(number) => Formula::Number(model.value(number)),
-        Of::Seen(what) => Formula::Seen(seen(model, *what)),
-        Of::Negative(a) => Formula::Negative(one(a)),
-        Of::Root(a) => Formula::Root(one(a)),
-        Of::Sum(parts) => Formula::Sum(two(parts)),
-        Of::Difference(parts) => Formula::Difference(two(parts)),
-        Of::Product(parts) => Formula::Product(two(parts)),
-        Of::Quotient(parts) => Formula::Quotient(two(parts)),
-        Of::Power(base, exponent) => Formula::Power(one(base), *exponent),
-    }
+    use gyro_model::Operation as Of;
+    let one = |operation: &Of| match operation {
+        Of::Number(number) => Operation::Number(model.value(number)),
+        Of::Seen(what) => Operation::Seen(seen(model, *what)),
+        Of::Negative(a) => Operation::Negative(*a),
+        Of::Sum(a, b) => Operation::Sum(*a, *b),
+        Of::Difference(a, b) => Operation::Difference(*a, *b),
+        Of::Product(a, b) => Operation::Product(*a, *b),
+        Of::Quotient(a, b) => Operation::Quotient(*a, *b),
+        Of::Power(base, exponent) => Operation::Power(*base, *exponent),
+        Of::Call(function, operands) => Operation::Call(elementary(*function), *operands),
+    };
+    Formula(of.operations.iter().map(one).collect())
+}
+
+/// Both tables of elementary functions have one order, see the test.
+fn elementary(function: Function) -> Elementary {
+    Elementary::ALL[function as usize]
 }
 
 /// Refuses a model whose events end runs.
@@ -165,4 +171,17 @@ pub(crate) fn csv(model: &Model, occurrences: &[Occurrence]) -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elementary_functions_are_in_one_order() {
+        for function in Function::ALL {
+            assert_eq!(format!("{function:?}"), format!("{:?}", elementary(function)));
+        }
+        assert_eq!(Function::ALL.len(), Elementary::ALL.len());
+    }
 }

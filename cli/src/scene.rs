@@ -193,7 +193,7 @@ fn is_balanced(model: &Model, inputs: &[Input]) -> bool {
             controllers::setting(model, *index).is_some()
                 || inputs.iter().any(|input| input.index == *index && any_varies(std::slice::from_ref(input)))
         }
-        Number::Exact(_) | Number::Parameter { .. } | Number::Computed(_) => false,
+        Number::Exact(_) | Number::Parameter { .. } | Number::Computed(_) | Number::Formula(_) => false,
     };
     !model.forces.iter().any(|force| match &force.kind {
         ForceKind::Spring { stiffness, free, .. } => varies(stiffness) || varies(free),

@@ -1,5 +1,7 @@
 //! Number types: few operations for the generated kernels, a few more for the solvers around them.
 
+#[cfg(feature = "wire")]
+use crate::wire::*;
 use core::fmt::Debug;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -106,6 +108,7 @@ pub trait Scalar:
 
 /// An elementary function, for number types that treat most of them alike. There will be more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "wire", derive(SerBin, DeBin))]
 #[non_exhaustive]
 pub enum Elementary {
     /// Square root.
@@ -133,6 +136,21 @@ pub enum Elementary {
 }
 
 impl Elementary {
+    /// All functions, in their order.
+    pub const ALL: [Self; 11] = [
+        Self::Sqrt,
+        Self::Sin,
+        Self::Cos,
+        Self::Tanh,
+        Self::Atan2,
+        Self::Exp,
+        Self::Ln,
+        Self::Abs,
+        Self::Floor,
+        Self::When,
+        Self::Unless,
+    ];
+
     /// The derivatives by the operands, the second one of functions of two, where the function has this value. By what
     /// a condition chooses it is one or zero, which nothing is to be multiplied by: where it is not chosen it may change infinitely fast.
     #[inline(always)]

@@ -47,7 +47,7 @@ pub use kinematics::Kinematics;
 pub use lines::Lines;
 pub use motion::{BodyMotion, Motion, Prescribed};
 pub use number::{Computation, Formula, Number, Operation, Rational, parse_decimal, to_f64};
-pub use parse::{column, is_keyword, meant, read, read_with};
+pub use parse::{column, is_keyword, meant, pi, read, read_with};
 pub use redundancy::{Analysis, analyse};
 pub use shape::{Shape, ShapeKind};
 pub use spatial::{Quaternion, Vector, unit_vector};

@@ -56,6 +56,8 @@ pub enum Seen {
     Coordinate(usize, usize),
     /// The rate of such a one.
     Rate(usize, usize),
+    /// The time.
+    Time,
 }
 
 const MOST: usize = 16;

@@ -1,46 +1,55 @@
 //! Formulas of what is seen of a mechanism.
 
 use crate::Seen;
-use gyro_sim::Real;
+use gyro_sim::{Elementary, Real};
 use nanoserde::{DeBin, SerBin};
 
-/// Arithmetic with numbers of the mechanism.
+/// Arithmetic with numbers of the mechanism: operations one after another, of which the last gives the value. There is
+/// at least one.
 #[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
-pub enum Formula {
+pub struct Formula(pub Vec<Operation>);
+
+/// An operation of a formula. Operands are the places of earlier ones.
+#[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
+pub enum Operation {
     /// A constant.
     Number(f64),
     /// A number of the mechanism.
     Seen(Seen),
     /// The other sign.
-    Negative(Box<Formula>),
-    /// The square root.
-    Root(Box<Formula>),
+    Negative(usize),
     /// The sum of both.
-    Sum(Box<[Formula; 2]>),
+    Sum(usize, usize),
     /// The first less the second.
-    Difference(Box<[Formula; 2]>),
+    Difference(usize, usize),
     /// The product of both.
-    Product(Box<[Formula; 2]>),
+    Product(usize, usize),
     /// The first divided by the second.
-    Quotient(Box<[Formula; 2]>),
+    Quotient(usize, usize),
     /// A whole power.
-    Power(Box<Formula>, i32),
+    Power(usize, i32),
+    /// An elementary function; of one operand both are the same.
+    Call(Elementary, [usize; 2]),
 }
 
 impl Formula {
     /// Its value; not finite where it divides by zero or has the root of a negative number.
     pub(crate) fn value<T: Real>(&self, see: &impl Fn(Seen) -> T) -> T {
-        match self {
-            Self::Number(value) => T::constant(*value),
-            Self::Seen(seen) => see(*seen),
-            Self::Negative(a) => -a.value(see),
-            Self::Root(a) => a.value(see).sqrt(),
-            Self::Sum(parts) => parts[0].value(see) + parts[1].value(see),
-            Self::Difference(parts) => parts[0].value(see) - parts[1].value(see),
-            Self::Product(parts) => parts[0].value(see) * parts[1].value(see),
-            Self::Quotient(parts) => parts[0].value(see) / parts[1].value(see),
-            Self::Power(base, exponent) => power(base.value(see), *exponent),
+        let mut values: Vec<T> = Vec::with_capacity(self.0.len());
+        for operation in &self.0 {
+            values.push(match operation {
+                Operation::Number(value) => T::constant(*value),
+                Operation::Seen(seen) => see(*seen),
+                Operation::Negative(a) => -values[*a],
+                Operation::Sum(a, b) => values[*a] + values[*b],
+                Operation::Difference(a, b) => values[*a] - values[*b],
+                Operation::Product(a, b) => values[*a] * values[*b],
+                Operation::Quotient(a, b) => values[*a] / values[*b],
+                Operation::Power(base, exponent) => power(values[*base], *exponent),
+                Operation::Call(function, operands) => T::call(*function, operands.map(|a| values[a])),
+            });
         }
+        values.pop().unwrap_or(T::constant(0.0))
     }
 }
 

@@ -41,7 +41,7 @@ pub use companion::{Difference, closely, companions, differences};
 pub use control::{Controller, Seen, Wiring};
 pub use failure::{Failure, describe, describe_in};
 pub use forecast::{Forecast, duration_words};
-pub use formula::Formula;
+pub use formula::{Formula, Operation};
 pub use grade::{Grade, Judgement, Measure, Reason, balance, judge};
 pub use input::{Between, Input, any_varies};
 pub use offers::{Offers, listed};

@@ -29,6 +29,7 @@ impl<F: Field> Point<F> {
             Number::Parameter { index, negated } => signed(&self.parameters[*index], *negated),
             Number::Input { index, negated } => signed(&self.inputs[*index], *negated),
             Number::Computed(computation) => self.computed(computation),
+            Number::Formula(_) => unreachable!("the textbook reads formulas, where something moves"),
         }
     }
 

@@ -224,7 +224,7 @@ fn solve<T: Number>(
 
 /// The logarithm of the product of all pivots.
 fn log_volume<T: Number>(lu: &DMatrix<T>) -> T {
-    pivots(lu).fold(T::zero(), |sum, pivot| sum + abs(pivot).ln())
+    pivots(lu).fold(T::zero(), |sum, pivot| sum + gyro_sim::Scalar::ln(abs(pivot)))
 }
 
 /// The diagonal of a matrix that need not be square.

@@ -1,5 +1,6 @@
 //! Energy, and the power of what the energy does not account for.
 
+use crate::model::amount::Now;
 use crate::model::forces::Element;
 use crate::model::lowered::Lowered;
 use crate::model::place::{Moment, Place};
@@ -31,7 +32,9 @@ impl<T: Number> Lowered<T> {
         }
         for element in &self.elements {
             if let Element::Along { path, law } = element {
-                energy.potential += law.potential(&self.scene.inputs, || path.value(&self.scene, at));
+                let now = Now { scene: &self.scene, at, line: [T::zero(); 2] };
+                energy.potential +=
+                    law.potential(|amount| amount.value(&now), || path.value(&self.scene, at));
             }
         }
         for rotor in &self.rotors {

@@ -1,7 +1,8 @@
 //! Applied forces, paper, eqs. (21) and (22): gravity, damping in the joints, and the forces of the model file.
 
 use crate::model::joint::Joint;
-use crate::model::law::{Amount, Law};
+use crate::model::amount::{Amount, Now};
+use crate::model::law::Law;
 use crate::model::measure::Coordinate;
 use crate::model::motion::Motion;
 use crate::model::path::{Path, Wrench};
@@ -48,19 +49,20 @@ impl<T: Number> Element<T> {
         let described = &joints[joint];
         described.references.first()?;
         let coordinate = Coordinate::of(described, 0);
-        let law = Law::Damper { damping: Amount::new(model, damping) };
+        let law = Law::Damper { damping: Amount::Constant(crate::number::number(model.value(damping))) };
         Some(Self::Along { path: Path::Coordinate(coordinate), law })
     }
 
     fn new(model: &Model, places: &Places<T>, joints: &[Joint<T>], kind: &ForceKind) -> Vec<Self> {
-        let amount = |number| Amount::new(model, number);
+        let amount = |number: &_| Amount::new(model, (places, joints), number);
         match kind {
-            ForceKind::Link { first, second, stiffness, damping, free_length } => {
+            ForceKind::Link { first, second, stiffness, damping, free_length, tension } => {
                 let end = |(body, point): &(usize, _)| (places.of(*body), vector(model.values(point)));
                 let path = Path::Line([end(first), end(second)]);
                 let spring = Law::Spring { stiffness: amount(stiffness), free: amount(free_length) };
                 let damper = Law::Damper { damping: amount(damping) };
-                let wanted = [(stiffness, spring), (damping, damper)];
+                let pull = Law::Pull { tension: amount(tension) };
+                let wanted = [(stiffness, spring), (damping, damper), (tension, pull)];
                 let wanted = wanted.into_iter().filter(|(strength, _)| !strength.is_zero());
                 wanted.map(|(_, law)| Self::Along { path, law }).collect()
             }
@@ -72,7 +74,7 @@ impl<T: Number> Element<T> {
                 frame: *frame,
             }],
             kind => {
-                let along = kind.parts().on.zip(Law::of(model, kind)).map(|((on, _), law)| {
+                let along = kind.parts().on.zip(Law::of(kind, amount)).map(|((on, _), law)| {
                     let path = Path::Coordinate(Coordinate::of(&joints[on.joint], on.coordinate));
                     Self::Along { path, law }
                 });
@@ -98,7 +100,10 @@ impl<T: Number> Element<T> {
                 let places = path.places(scene);
                 let motions = places.map(|place| scene.motion(at, place));
                 let grip = path.grip(scene, &motions);
-                let force = law.force(&scene.inputs, || path.value(scene, at), grip.rate);
+                let x = || path.value(scene, at);
+                let now = |line| Now { scene, at, line };
+                let now = if let Path::Line(_) = path { now([x(), grip.rate]) } else { now([T::zero(); 2]) };
+                let force = law.force(|amount| amount.value(&now), x, grip.rate);
                 for ((place, motion), wrench) in places.into_iter().zip(&motions).zip(&grip.wrenches) {
                     sink(place, motion, wrench.times(force));
                 }
@@ -112,8 +117,9 @@ impl<T: Number> Element<T> {
             }
             Self::Load { place, point, force, torque, frame } => {
                 let motion = scene.motion(at, place);
+                let now = Now { scene, at, line: [T::zero(); 2] };
                 let [force, torque] =
-                    [force, torque].map(|v| Vector3::from(v.each_ref().map(|x| x.value(&scene.inputs))));
+                    [force, torque].map(|v| Vector3::from(v.each_ref().map(|x| x.value(&now))));
                 // Both in the body's frame.
                 let (force, torque) = match frame {
                     LoadFrame::Body => (force, torque),

@@ -1,18 +1,11 @@
 //! Laws of force along a coordinate: [`gyro_model::ForceKind`].
 
+use crate::model::amount::Amount;
 use crate::number::{Number, number, sqrt, tanh};
-use gyro_model::{ForceKind, Model, Number as PageNumber, StopSide};
-
-/// A number of a force: folded, or an input that the caller sets.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Amount<T> {
-    Constant(T),
-    /// Index into [`crate::Lowered::inputs`], and a factor of 1 or −1.
-    Input(usize, T),
-}
+use gyro_model::{ForceKind, Number as PageNumber, StopSide};
 
 /// A force as a function of a coordinate x and its rate.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Law<T> {
     /// `−stiffness (x − free)`, with the potential `½ stiffness (x − free)²`.
     Spring { stiffness: Amount<T>, free: Amount<T> },
@@ -25,32 +18,13 @@ pub(crate) enum Law<T> {
     Stop { limit: Amount<T>, side: StopSide, stiffness: Amount<T>, damping: Amount<T>, softness: Amount<T> },
     /// Given.
     Motor { value: Amount<T> },
-}
-
-impl<T: Number> Amount<T> {
-    pub(crate) fn new(model: &Model, value: &PageNumber) -> Self {
-        match value {
-            PageNumber::Input { index, negated } => {
-                Self::Input(*index, if *negated { -T::one() } else { T::one() })
-            }
-            PageNumber::Exact(_) | PageNumber::Parameter { .. } | PageNumber::Computed(_) => {
-                Self::Constant(number(model.value(value)))
-            }
-        }
-    }
-
-    pub(crate) fn value(&self, inputs: &[(String, T)]) -> T {
-        match self {
-            Self::Constant(value) => *value,
-            Self::Input(index, sign) => inputs[*index].1 * *sign,
-        }
-    }
+    /// Minus what is given.
+    Pull { tension: Amount<T> },
 }
 
 impl<T: Number> Law<T> {
     /// The law of a force along a joint coordinate; `None` of others.
-    pub(crate) fn of(model: &Model, kind: &ForceKind) -> Option<Self> {
-        let amount = |number| Amount::new(model, number);
+    pub(crate) fn of(kind: &ForceKind, amount: impl Fn(&PageNumber) -> Amount<T>) -> Option<Self> {
         Some(match kind {
             ForceKind::Spring { on: _, stiffness, free } => {
                 Self::Spring { stiffness: amount(stiffness), free: amount(free) }
@@ -60,7 +34,7 @@ impl<T: Number> Law<T> {
                 Self::Coulomb { level: amount(level), rate: amount(rate) }
             }
             ForceKind::Stop { on: _, limit, side, stiffness, damping, softness } => {
-                let [limit, stiffness, damping, softness] = [limit, stiffness, damping, softness].map(amount);
+                let [limit, stiffness, damping, softness] = [limit, stiffness, damping, softness].map(&amount);
                 Self::Stop { limit, side: *side, stiffness, damping, softness }
             }
             ForceKind::Motor { on: _, value } => Self::Motor { value: amount(value) },
@@ -73,9 +47,8 @@ impl<T: Number> Law<T> {
         matches!(self, Self::Spring { .. })
     }
 
-    /// The force at a coordinate, which only some laws ask for, and a rate.
-    pub(crate) fn force(&self, inputs: &[(String, T)], x: impl FnOnce() -> T, rate: T) -> T {
-        let value = |amount: &Amount<T>| amount.value(inputs);
+    /// The force at a coordinate, which only some laws ask for, and a rate, with the values of amounts.
+    pub(crate) fn force(&self, value: impl Fn(&Amount<T>) -> T, x: impl FnOnce() -> T, rate: T) -> T {
         match self {
             Self::Spring { stiffness, free } => -value(stiffness) * (x() - value(free)),
             Self::Damper { damping } => -value(damping) * rate,
@@ -88,15 +61,16 @@ impl<T: Number> Law<T> {
                 -outward * value(stiffness) * ramp - value(damping) * slope * rate
             }
             Self::Motor { value: amount } => value(amount),
+            Self::Pull { tension } => -value(tension),
         }
     }
 
     /// The energy that a conservative force holds; zero of all others.
-    pub(crate) fn potential(&self, inputs: &[(String, T)], x: impl FnOnce() -> T) -> T {
+    pub(crate) fn potential(&self, value: impl Fn(&Amount<T>) -> T, x: impl FnOnce() -> T) -> T {
         match self {
             Self::Spring { stiffness, free } => {
-                let stretch = x() - free.value(inputs);
-                stiffness.value(inputs) * stretch * stretch * number(0.5)
+                let stretch = x() - value(free);
+                value(stiffness) * stretch * stretch * number(0.5)
             }
             _ => T::zero(),
         }

@@ -1,5 +1,6 @@
 //! The mechanism at run time: poses, rows, forces and outputs as the textbook has them, for all forms of the solve.
 
+pub(crate) mod amount;
 pub(crate) mod applied;
 pub(crate) mod armatures;
 pub(crate) mod constraints;
@@ -23,5 +24,6 @@ pub(crate) mod rotor;
 pub(crate) mod rounding;
 pub(crate) mod rows;
 pub(crate) mod scene;
+pub(crate) mod spot;
 pub(crate) mod textbook;
 pub(crate) mod turns;

@@ -1,13 +1,13 @@
 //! The numbers of a model file's outputs at a moment.
 
-use crate::model::law::Amount;
+use crate::model::amount::{Amount, Now};
 use crate::model::lowered::Lowered;
 use crate::model::motion::{Motion, along_pi};
-use crate::model::outputs::{Quantity, Solution, Spot};
+use crate::model::outputs::{Quantity, Solution};
 use crate::model::place::{Moment, Place};
 use crate::model::rows::Row;
 use crate::number::Number;
-use nalgebra::{Quaternion, Vector3};
+use nalgebra::Vector3;
 
 impl<T: Number> Lowered<T> {
     /// Number of numbers of all outputs.
@@ -28,23 +28,19 @@ impl<T: Number> Lowered<T> {
     fn output(&self, at: Moment<'_, T>, solution: Solution<'_, T>, quantity: &Quantity<T>, out: &mut [T]) {
         match quantity {
             Quantity::Pose(spot) => {
-                let motion = self.scene.motion(at, &spot.place);
-                let [e0, e1, e2, e3] = motion.p.into();
-                let p = Quaternion::new(e0, e1, e2, e3) * spot.turn.quaternion();
-                write(out, &motion.tip(&spot.point), &[p.w, p.i, p.j, p.k]);
+                out.copy_from_slice(&spot.pose(&self.scene.motion(at, &spot.place)));
             }
             Quantity::Velocity(spot) => {
-                let motion = self.scene.motion(at, &spot.place);
-                write(out, &motion.tip_velocity(&spot.point), by_axes(spot, motion.w).as_slice());
+                out.copy_from_slice(&spot.velocity(&self.scene.motion(at, &spot.place)));
             }
             Quantity::Acceleration(spot) => {
                 let motion = self.accelerated(at, &spot.place, solution.accelerations);
-                write(out, &motion.point(&spot.point).second, by_axes(spot, motion.w_dot).as_slice());
+                write(out, &motion.point(&spot.point).second, spot.by_axes(motion.w_dot).as_slice());
             }
             Quantity::Inertial(spot) => {
                 let motion = self.accelerated(at, &spot.place, solution.accelerations);
                 let specific_force = motion.point(&spot.point).second - self.scene.gravity;
-                let [felt, w] = [motion.a.tr_mul(&specific_force), motion.w].map(|v| by_axes(spot, v));
+                let [felt, w] = [motion.a.tr_mul(&specific_force), motion.w].map(|v| spot.by_axes(v));
                 write(out, &felt, w.as_slice());
             }
             Quantity::Reaction(joint, rows) => {
@@ -56,9 +52,11 @@ impl<T: Number> Lowered<T> {
                 let motions = places.map(|place| self.scene.motion(at, place));
                 let (x, rate) =
                     (elastic.path.value(&self.scene, at), elastic.path.grip(&self.scene, &motions).rate);
-                let value = |amount: &Amount<T>| amount.value(&self.scene.inputs);
+                let now = Now { scene: &self.scene, at, line: [x, rate] };
+                let value = |amount: &Amount<T>| amount.value(&now);
                 let deflection = x - value(&elastic.free);
-                out[0] = -value(&elastic.stiffness) * deflection - value(&elastic.damping) * rate;
+                let spring = -value(&elastic.stiffness) * deflection;
+                out[0] = spring - value(&elastic.damping) * rate - value(&elastic.tension);
                 out[1] = if elastic.is_link { x } else { deflection };
             }
             Quantity::Load(row) => out[0] = row.map_or(T::zero(), |row| -solution.lambda[row]),
@@ -105,11 +103,6 @@ impl<T: Number> Lowered<T> {
         let (f, g, h) = (i.a * joint.first.f, i.a * joint.first.g, i.a * joint.first.h);
         [force, torque].map(|v| Vector3::new(f.dot(&v), g.dot(&v), h.dot(&v)))
     }
-}
-
-/// A vector in a body's frame, by the axes of a frame in it.
-fn by_axes<T: Number>(spot: &Spot<T>, vector: Vector3<T>) -> Vector3<T> {
-    spot.turn.inverse_transform_vector(&vector)
 }
 
 fn write<T: Number>(out: &mut [T], vector: &Vector3<T>, rest: &[T]) {

@@ -1,13 +1,13 @@
 //! What a model file asks for besides the motion: [`gyro_model::OutputKind`].
 
 use crate::model::joint::Joint;
-use crate::model::law::Amount;
+use crate::model::amount::Amount;
 use crate::model::measure::Coordinate;
 use crate::model::path::Path;
-use crate::model::place::{Place, Places, vector};
+use crate::model::place::{Places, vector};
+use crate::model::spot::Spot;
 use crate::number::Number;
 use gyro_model::{BodyFrame, ForceKind, Model, OutputKind, RowOwner};
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// An output; its name is in the description.
 #[derive(Clone, Debug)]
@@ -33,23 +33,14 @@ pub(crate) enum Quantity<T> {
     Power,
 }
 
-/// A frame of a body.
-#[derive(Clone, Debug)]
-pub(crate) struct Spot<T> {
-    pub(crate) place: Place<T>,
-    /// Its origin, in the body's frame.
-    pub(crate) point: Vector3<T>,
-    /// How it is turned in the body's frame.
-    pub(crate) turn: UnitQuaternion<T>,
-}
-
-/// `−stiffness (x − free) − damping ẋ` along a path.
+/// `−stiffness (x − free) − damping ẋ − tension` along a path.
 #[derive(Clone, Debug)]
 pub(crate) struct Elastic<T> {
     pub(crate) path: Path<T>,
     pub(crate) stiffness: Amount<T>,
     pub(crate) free: Amount<T>,
     pub(crate) damping: Amount<T>,
+    pub(crate) tension: Amount<T>,
     /// Whether x is told beside the force, rather than x − free.
     pub(crate) is_link: bool,
 }
@@ -66,15 +57,16 @@ pub(crate) struct Solution<'a, T> {
 
 impl<T: Number> Elastic<T> {
     fn new(model: &Model, (places, joints): (&Places<T>, &[Joint<T>]), kind: &ForceKind) -> Self {
-        let amount = |number| Amount::new(model, number);
+        let amount = |number: &_| Amount::new(model, (places, joints), number);
         match kind {
-            ForceKind::Link { first, second, stiffness, damping, free_length } => {
+            ForceKind::Link { first, second, stiffness, damping, free_length, tension } => {
                 let end = |(body, point): &(usize, _)| (places.of(*body), vector(model.values(point)));
                 Self {
                     path: Path::Line([end(first), end(second)]),
                     stiffness: amount(stiffness),
                     free: amount(free_length),
                     damping: amount(damping),
+                    tension: amount(tension),
                     is_link: true,
                 }
             }
@@ -83,6 +75,7 @@ impl<T: Number> Elastic<T> {
                 stiffness: amount(stiffness),
                 free: amount(free),
                 damping: Amount::Constant(T::zero()),
+                tension: Amount::Constant(T::zero()),
                 is_link: false,
             },
             _ => unreachable!("the reader refuses outputs of other forces"),
@@ -96,15 +89,7 @@ impl<T: Number> Output<T> {
         (places, joints): (&Places<T>, &[Joint<T>]),
         output: &gyro_model::Output,
     ) -> Self {
-        let spot = |frame: &BodyFrame| {
-            let [e0, e1, e2, e3] =
-                frame.orientation.as_ref().map_or([1.0, 0.0, 0.0, 0.0], |p| model.values(p));
-            Spot {
-                place: places.of(frame.body),
-                point: vector(model.values(&frame.point)),
-                turn: UnitQuaternion::from_quaternion(Quaternion::new(e0, e1, e2, e3)).cast(),
-            }
-        };
+        let spot = |frame: &BodyFrame| Spot::new(model, places, frame);
         let rows_of = |owner| -> Vec<usize> {
             let rows = model.rows().into_iter().enumerate();
             rows.filter(|(_, row)| row.owner == owner).map(|(index, _)| index).collect()

@@ -106,7 +106,7 @@ fn unit(v: [f64; 3], otherwise: [f64; 3]) -> [f64; 3] {
 
 fn links(model: &Model) -> Vec<gyro_show::Link> {
     let link = |force: &gyro_model::Force| match &force.kind {
-        ForceKind::Link { first, second, stiffness, damping, free_length } => Some(gyro_show::Link {
+        ForceKind::Link { first, second, stiffness, damping, free_length, tension: _ } => Some(gyro_show::Link {
             name: force.name.clone(),
             ends: [first, second].map(|(body, point)| (*body, model.values(point))),
             stiffness: model.value(stiffness),

@@ -161,7 +161,7 @@ impl Forces {
 
     fn add_load(&mut self, system: &mut System, kind: &ForceKind) {
         let ForceKind::Load { body, point, force, torque, frame } = kind else { return };
-        let end = PointOfBody::new(system, *body, point);
+        let end = &PointOfBody::new(system, *body, point);
         let [given_force, given_torque] =
             [force, torque].map(|v| v.each_ref().map(|x| laws::strength(system, &OfBodies, x)));
         let pose = system.poses[*body];

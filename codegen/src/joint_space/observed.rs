@@ -9,6 +9,7 @@ use super::jacobian::{forward, has_tables};
 use super::{maps, motions, multipliers};
 use crate::derive::Textbook;
 use crate::derive::outputs::{self, Sources};
+use crate::derive::points;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
 use crate::expr::differentiate::gradient;
@@ -99,7 +100,7 @@ impl Frames {
             return None;
         }
         let velocities: Vec<_> =
-            frames.iter().flat_map(|(_, frame)| outputs::velocity(system, frame)).collect();
+            frames.iter().flat_map(|(_, frame)| points::velocity(system, frame)).collect();
         let jacobians = jacobian(system, coordinates, &velocities);
         let accelerations: Vec<_> =
             frames.iter().flat_map(|(_, frame)| outputs::acceleration(system, frame)).collect();

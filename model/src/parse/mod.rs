@@ -37,6 +37,7 @@ mod tensor;
 mod units;
 
 pub use names::{column, is_keyword, meant};
+pub use units::pi;
 
 use toml::de::DeTable;
 

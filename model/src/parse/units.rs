@@ -8,7 +8,8 @@ use crate::{Rational, parse_decimal};
 /// π to more digits than any `f64` distinguishes, so that what is computed with it is rounded once.
 const PI: &str = "3.14159265358979323846264338327950288419717";
 
-pub(super) fn pi() -> Rational {
+/// π, to 42 digits: what formulas and angles in degrees are computed with.
+pub fn pi() -> Rational {
     parse_decimal(PI).expect("π is a decimal")
 }
 

@@ -4,7 +4,8 @@ use crate::{
     BodySample, Controller, Coordinates, Correction, Input, Integrator, JointSample, Seen, Touch, Watch,
     What, When, Wiring,
 };
-use crate::{Formula, Path};
+use crate::{Formula, Operation, Path};
+use gyro_sim::Elementary;
 use gyro_sim::{JointPlace, Owner, Passage, Statistics};
 use gyro_yardstick::Measured;
 
@@ -54,10 +55,13 @@ fn a_request_comes_back_bit_by_bit() {
                     ..Controller::default()
                 }],
                 watches: vec![Watch {
-                    of: Formula::Difference(Box::new([
-                        Formula::Seen(Seen::Rate(1, 0)),
-                        Formula::Power(Box::new(Formula::Number(AWKWARD[1])), -2),
-                    ])),
+                    of: Formula(vec![
+                        Operation::Seen(Seen::Rate(1, 0)),
+                        Operation::Number(AWKWARD[1]),
+                        Operation::Power(1, -2),
+                        Operation::Call(Elementary::When, [0, 2]),
+                        Operation::Difference(0, 3),
+                    ]),
                     level: AWKWARD[0],
                     rising: true,
                     falling: false,

@@ -24,7 +24,7 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
         let Self { mechanism, motion, controllers, turns, observer, y, .. } = self;
         let outputs = observer.outputs(mechanism, t, y);
         let mut changed = Vec::new();
-        let see = |measured| seen(&**mechanism, outputs, turns, measured);
+        let see = |measured| seen(&**mechanism, outputs, turns, t, measured);
         controllers.act(t, see, |index, value| changed.push((index, value)));
         for (index, value) in changed {
             mechanism.set_input(index, value);

@@ -13,6 +13,7 @@ pub(super) fn seen<M: Mechanism<Scalar: Real>>(
     mechanism: &M,
     outputs: &[M::Scalar],
     turns: &Turns<M>,
+    t: M::Scalar,
     what: Seen,
 ) -> M::Scalar {
     let scalar = |joint, k| match turns.coordinate(mechanism, joint, k) {
@@ -25,6 +26,7 @@ pub(super) fn seen<M: Mechanism<Scalar: Real>>(
         Seen::Output(index) => outputs[index],
         Seen::Coordinate(joint, k) => scalar(joint, k)[0],
         Seen::Rate(joint, k) => scalar(joint, k)[1],
+        Seen::Time => t,
     }
 }
 
@@ -92,7 +94,7 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
         let mut turns = turns.clone();
         turns.update(mechanism, time, dt, y);
         let outputs = observer.outputs(mechanism, time, y);
-        let values = watches.values(|what| seen(&**mechanism, outputs, &turns, what));
+        let values = watches.values(|what| seen(&**mechanism, outputs, &turns, time, what));
         match values.iter().position(|value| !value.is_finite()) {
             Some(_) => Err(Error::NotFinite { t, index: u16::MAX }),
             None => Ok(values),

@@ -26,7 +26,7 @@ impl<F: Field> Evaluation<'_, F> {
         let mut forces =
             Forces { loads: vec![none; model.bodies.len()], potential: zero.clone(), power: zero };
         for joint in 0..model.joints.len() {
-            self.add_damping(&mut forces, joint);
+            self.add_damping(&mut forces, joint)?;
         }
         for force in &model.forces {
             self.add(&mut forces, &force.kind)?;
@@ -42,28 +42,28 @@ impl<F: Field> Evaluation<'_, F> {
                 forces.potential = &forces.potential + &pull * stretch * &self.scope.half;
                 self.push_along(forces, *on, &-pull);
             }
-            ForceKind::Damper { on, damping } => self.add_damper(forces, *on, damping),
+            ForceKind::Damper { on, damping } => self.add_damper(forces, *on, damping)?,
             ForceKind::Coulomb { on, level, rate } => {
                 let ratio = self.coordinate_rate(*on) * self.scope.number(rate).reciprocal()?;
-                let force = -(self.scope.number(level) * self.scope.tanh(&ratio));
+                let force = -(self.strength(level)? * self.scope.tanh(&ratio));
                 self.work_along(forces, *on, &force);
             }
             ForceKind::Stop { on, .. } => {
                 let force = self.stop(kind)?;
                 self.work_along(forces, *on, &force);
             }
-            ForceKind::Motor { on, value } => self.work_along(forces, *on, &self.scope.number(value)),
+            ForceKind::Motor { on, value } => self.work_along(forces, *on, &self.strength(value)?),
             ForceKind::Link { .. } => self.add_link(forces, kind)?,
-            ForceKind::Load { .. } => self.add_load(forces, kind),
+            ForceKind::Load { .. } => self.add_load(forces, kind)?,
         }
         Some(())
     }
 
     /// A joint's own viscous damping: along its one coordinate, or against all relative rotation.
-    fn add_damping(&self, forces: &mut Forces<F>, joint: usize) {
+    fn add_damping(&self, forces: &mut Forces<F>, joint: usize) -> Option<()> {
         let description = &self.textbook.model.joints[joint];
         if description.damping.is_zero() {
-            return;
+            return Some(());
         }
         if description.kind != JointKind::Spherical {
             return self.add_damper(forces, JointCoordinate { joint, coordinate: 0 }, &description.damping);
@@ -74,18 +74,21 @@ impl<F: Field> Evaluation<'_, F> {
         forces.power = &forces.power - drag.dot(&spin);
         forces.push(first, &Load::torque(&self.moving[first], &self.scope, &drag));
         forces.push(second, &Load::torque(&self.moving[second], &self.scope, &-drag));
+        Some(())
     }
 
-    fn add_damper(&self, forces: &mut Forces<F>, on: JointCoordinate, damping: &Number) {
-        let force = -(self.scope.number(damping) * self.coordinate_rate(on));
+    fn add_damper(&self, forces: &mut Forces<F>, on: JointCoordinate, damping: &Number) -> Option<()> {
+        let force = -(self.strength(damping)? * self.coordinate_rate(on));
         self.work_along(forces, on, &force);
+        Some(())
     }
 
     /// `∓stiffness ρ(z) − damping σ(z) ẋ` with z the depth beyond the limit.
     fn stop(&self, kind: &ForceKind) -> Option<Jet<F>> {
         let ForceKind::Stop { on, limit, side, stiffness, damping, softness } = kind else { return None };
-        let [limit, stiffness, damping, softness] =
-            [limit, stiffness, damping, softness].map(|number| self.scope.number(number));
+        let [limit, stiffness, softness] =
+            [limit, stiffness, softness].map(|number| self.scope.number(number));
+        let damping = self.strength(damping)?;
         let beyond = self.coordinate(*on, &self.still)? - limit;
         let z = if *side == StopSide::Upper { beyond } else { -beyond };
         let root = self.scope.sqrt(&(&z * &z + &softness * &softness))?;
@@ -103,7 +106,7 @@ impl<F: Field> Evaluation<'_, F> {
                 let stretch = self.coordinate(*on, &self.still)? - self.scope.number(free);
                 [-(self.scope.number(stiffness) * &stretch), stretch]
             }
-            ForceKind::Link { first, second, stiffness, damping, free_length } => {
+            ForceKind::Link { first, second, stiffness, damping, free_length, tension } => {
                 let [from, to] = [first, second].map(|(body, point)| {
                     let (moving, point) = (&self.moving[*body], self.scope.vector(point));
                     (moving.pose.point(&point), moving.velocity(&point))
@@ -112,7 +115,9 @@ impl<F: Field> Evaluation<'_, F> {
                 let length = self.scope.sqrt(&line.dot(&line))?;
                 let growth = line.dot(&drift) * length.reciprocal()?;
                 let pull = self.scope.number(stiffness) * (length.clone() - self.scope.number(free_length));
-                [-(pull + self.scope.number(damping) * growth), length]
+                let [damping, tension] =
+                    [damping, tension].map(|number| self.strength_along(number, Some([&length, &growth])));
+                [-(pull + damping? * &growth + tension?), length]
             }
             _ => return None,
         };
@@ -121,17 +126,20 @@ impl<F: Field> Evaluation<'_, F> {
 
     /// Along the line between two points.
     fn add_link(&self, forces: &mut Forces<F>, kind: &ForceKind) -> Option<()> {
-        let ForceKind::Link { first, second, stiffness, damping, free_length } = kind else { return None };
+        let ForceKind::Link { first, second, stiffness, damping, free_length, tension } = kind else {
+            return None;
+        };
         let (i, j) = (&self.moving[first.0], &self.moving[second.0]);
         let [s_i, s_j] = [&first.1, &second.1].map(|point| self.scope.vector(point));
-        let [stiffness, damping, free] =
-            [stiffness, damping, free_length].map(|number| self.scope.number(number));
+        let [stiffness, free] = [stiffness, free_length].map(|number| self.scope.number(number));
         let d = j.pose.point(&s_j) - i.pose.point(&s_i);
         let length = self.scope.sqrt(&d.dot(&d))?;
         let unit = d.times(&length.reciprocal()?);
         let speed = unit.dot(&(j.velocity(&s_j) - i.velocity(&s_i)));
+        let [damping, tension] =
+            [damping, tension].map(|number| self.strength_along(number, Some([&length, &speed])));
         let stretch = length - free;
-        let (pull, drag) = (stiffness * &stretch, damping * &speed);
+        let (pull, drag) = (stiffness * &stretch, damping? * &speed + tension?);
         let force = unit.times(&-(&pull + &drag));
         forces.potential = &forces.potential + pull * stretch * &self.scope.half;
         forces.power = &forces.power - drag * speed;
@@ -140,19 +148,20 @@ impl<F: Field> Evaluation<'_, F> {
         Some(())
     }
 
-    fn add_load(&self, forces: &mut Forces<F>, kind: &ForceKind) {
-        let ForceKind::Load { body, point, force, torque, frame } = kind else { return };
+    fn add_load(&self, forces: &mut Forces<F>, kind: &ForceKind) -> Option<()> {
+        let ForceKind::Load { body, point, force, torque, frame } = kind else { return None };
         let moving = &self.moving[*body];
         let in_global = |v: Vector<F>| match frame {
             LoadFrame::Global => v,
             LoadFrame::Body => moving.pose.a.apply(&v),
         };
-        let [force, torque] = [force, torque].map(|given| in_global(self.scope.vector(given)));
+        let [force, torque] = [in_global(self.strengths(force)?), in_global(self.strengths(torque)?)];
         let place = moving.pose.point(&self.scope.vector(point));
         let pushed = Load::at(moving, &force, &place);
         let load = pushed.plus(&Load::torque(moving, &self.scope, &torque));
         forces.power = &forces.power + load.power(moving);
         forces.push(*body, &load);
+        Some(())
     }
 
     /// A force along a coordinate that stores no energy.

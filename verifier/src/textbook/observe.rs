@@ -124,7 +124,7 @@ impl<F: Field> Evaluation<'_, F> {
     }
 
     /// A vector in a body's frame, by the axes of a frame in it.
-    fn by_axes(&self, frame: &BodyFrame, vector: &Vector<F>) -> Option<Vector<F>> {
+    pub(super) fn by_axes(&self, frame: &BodyFrame, vector: &Vector<F>) -> Option<Vector<F>> {
         let Some(own) = &frame.orientation else { return Some(vector.clone()) };
         Some(self.scope.rotation(&self.scope.unit(own)?).transposed().apply(vector))
     }

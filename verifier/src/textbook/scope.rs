@@ -113,7 +113,6 @@ impl<'a, F: Field> Scope<'a, F> {
     }
 }
 
-#[cfg_attr(not(test), expect(dead_code, reason = "formulas are to call them"))]
 impl<F: Field> Scope<'_, F> {
     /// `eˣ`, which is its own derivative.
     pub fn exp(&self, x: &Jet<F>) -> Jet<F> {
