@@ -14,12 +14,17 @@ pub(crate) fn number<T: Number>(value: f64) -> T {
 
 /// Absolute value; both traits have one, as they have the functions below.
 pub(crate) fn abs<T: Number>(value: T) -> T {
-    <T as Real>::abs(value)
+    <T as Scalar>::abs(value)
 }
 
 /// Square root.
 pub(crate) fn sqrt<T: Number>(value: T) -> T {
     <T as Scalar>::sqrt(value)
+}
+
+/// Natural logarithm.
+pub(crate) fn ln<T: Number>(value: T) -> T {
+    <T as Scalar>::ln(value)
 }
 
 /// Hyperbolic tangent.

@@ -82,14 +82,14 @@ fn called(function: Function) -> Elementary {
     }
 }
 
-/// The source of a mechanism that calls all functions, one after the other in the place of the hyperbolic tangent, with
-/// a program that calls them, too.
+/// The source of a mechanism that calls all functions, one after the other in the place of those that it has, with a
+/// program that calls them, too.
 fn source(precision: Precision, real: &str) -> (String, [String; 2]) {
     let (model, mut module) = model_and_module(PAGE, None);
     let mut next = Function::ALL.into_iter().cycle();
     let kernels = module.scheduled.kernels.values_mut();
     for operation in kernels.flat_map(|kernel| &mut kernel.tape.outside.operations) {
-        if let Operation::Call(called @ Function::Tanh, _) = operation {
+        if let Operation::Call(called, _) = operation {
             *called = next.next().expect("it goes round");
         }
     }

@@ -49,7 +49,7 @@ fn roots_are_positive_and_multiply() {
 fn small_fractions_are_found_and_drawn_numbers_are_none() {
     let mut random = ChaCha8Rng::seed_from_u64(6);
     let prime = Prime::<9>::mersenne();
-    let large = BigInt::from(10).pow(41) + 3;
+    let large: BigInt = BigInt::from(10).pow(41) + 3;
     for numerator in [0, 1, -1, 22, -355] {
         for denominator in [1, 7, 113] {
             for factor in [BigInt::from(1), large.clone()] {
