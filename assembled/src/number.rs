@@ -22,6 +22,11 @@ pub(crate) fn sqrt<T: Number>(value: T) -> T {
     <T as Scalar>::sqrt(value)
 }
 
+/// Natural logarithm.
+pub(crate) fn ln<T: Number>(value: T) -> T {
+    <T as Scalar>::ln(value)
+}
+
 /// Hyperbolic tangent.
 pub(crate) fn tanh<T: Number>(value: T) -> T {
     <T as Scalar>::tanh(value)

@@ -127,6 +127,12 @@ impl Scalar for Dual {
                 let turned = y.value * x.slope - x.value * y.slope;
                 dual(value, turned / (x.value * x.value + y.value * y.value))
             }
+            Elementary::Exp => dual(value, x.slope * value),
+            Elementary::Ln => dual(value, x.slope / x.value),
+            Elementary::Abs => dual(value, if x.value < 0.0 { -x.slope } else { x.slope }),
+            Elementary::Floor => dual(value, 0.0),
+            // What is not taken may change infinitely fast.
+            Elementary::When | Elementary::Unless => dual(value, f64::call(function, [x.value, y.slope])),
             other => unreachable!("{other:?} is in no scene"),
         }
     }

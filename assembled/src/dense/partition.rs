@@ -6,7 +6,7 @@ use crate::assembled::Refusal;
 use crate::model::lowered::Lowered;
 use crate::model::place::Moment;
 use crate::model::textbook::angular_velocity;
-use crate::number::{Number, abs, number, resolvable, sqrt};
+use crate::number::{Number, abs, ln, number, resolvable, sqrt};
 use nalgebra::{DMatrix, DVector, Dyn, LU, RowDVector, Vector4};
 
 /// The coordinates are chosen anew once the volume |det Φ_u| has fallen below this fraction of the best choice's.
@@ -224,7 +224,7 @@ fn solve<T: Number>(
 
 /// The logarithm of the product of all pivots.
 fn log_volume<T: Number>(lu: &DMatrix<T>) -> T {
-    pivots(lu).fold(T::zero(), |sum, pivot| sum + gyro_sim::Scalar::ln(abs(pivot)))
+    pivots(lu).fold(T::zero(), |sum, pivot| sum + ln(abs(pivot)))
 }
 
 /// The diagonal of a matrix that need not be square.

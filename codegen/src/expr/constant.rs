@@ -59,10 +59,13 @@ impl Constant {
         if self.is_negative() { self.neg() } else { self.clone() }
     }
 
-    /// The largest whole number that is not larger than a rational; `None` of a root.
-    pub fn floor(&self) -> Option<Self> {
-        let is_rational = self.0.radicand.is_one();
-        is_rational.then(|| Self::of(self.0.coefficient.floor().into(), UBig::ONE))
+    pub fn is_rational(&self) -> bool {
+        self.0.radicand.is_one()
+    }
+
+    /// The largest whole number that is not larger than a rational.
+    pub fn floor(&self) -> Self {
+        Self::of(self.0.coefficient.floor().into(), UBig::ONE)
     }
 
     /// `None` for a sum that is not of this form.

@@ -271,12 +271,12 @@ impl Graph {
         if is_negative && parity == Parity::Odd { self.neg(value) } else { value }
     }
 
-    /// What is exact of constants: where they lie, and what a constant condition chooses.
+    /// What is exact of rationals: where they lie, and what such a condition chooses.
     fn known(&mut self, function: Function, [a, b]: [ExprId; 2]) -> Option<ExprId> {
-        let constant = self.as_constant(a).cloned();
+        let constant = self.as_constant(a).filter(|constant| constant.is_rational()).cloned();
         match function {
             Function::Abs => Some(self.constant(constant?.abs())),
-            Function::Floor => Some(self.constant(constant?.floor()?)),
+            Function::Floor => Some(self.constant(constant?.floor())),
             Function::When | Function::Unless if b == Self::ZERO => Some(Self::ZERO),
             Function::When | Function::Unless => {
                 let constant = constant?;

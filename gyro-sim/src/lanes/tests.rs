@@ -75,6 +75,14 @@ fn other_functions_are_those_of_libm() {
     check::<f64x8>(arguments(), (Scalar::tanh, libm::tanh));
     check::<f32x8>(arguments(), (Scalar::sqrt, libm::sqrtf));
     check::<f64x4>(arguments(), (|y| Scalar::atan2(y, f64x4::splat(-0.3)), |y| libm::atan2(y, -0.3)));
+    check::<f64x8>(arguments(), (Scalar::exp, libm::exp));
+    check::<f64x2>(arguments(), (Scalar::ln, libm::log));
+    check::<f64x4>(arguments(), (Scalar::abs, libm::fabs));
+    check::<f64x4>(arguments(), (Scalar::floor, libm::floor));
+    check::<f32x8>(arguments(), (Scalar::exp, libm::expf));
+    check::<f32x8>(arguments(), (Scalar::ln, libm::logf));
+    check::<f32x8>(arguments(), (Scalar::abs, libm::fabsf));
+    check::<f32x8>(arguments(), (Scalar::floor, libm::floorf));
     let table = ([0.0, 1.0, 2.0], [[0.0, 1.5, 0.0, -0.5], [1.0, 0.0, -1.5, 0.5]]);
     let value = |[value, slope, bend]: [f64x8; 3]| value + slope + bend;
     let scalar = |[value, slope, bend]: [f64; 3]| value + slope + bend;
@@ -82,6 +90,39 @@ fn other_functions_are_those_of_libm() {
         arguments(),
         (|t: f64x8| value(t.spline(&table.0, &table.1)), |t: f64| scalar(t.spline(&table.0, &table.1))),
     );
+}
+
+/// Conditions of every kind by lane, with whatever is chosen by them.
+fn check_choices<T: Lanes<Lane: PartialEq>>() {
+    for chosen in [0.3, -0.0, f64::INFINITY, f64::NAN] {
+        let (lane, pack) = (T::Lane::constant(chosen), T::constant(chosen));
+        check::<T>(arguments(), (|c| c.when(pack), |c| c.when(lane)));
+        check::<T>(arguments(), (|c| c.unless(pack), |c| c.unless(lane)));
+    }
+}
+
+#[test]
+fn choices_are_those_of_one_number() {
+    check_choices::<f64x2>();
+    check_choices::<f64x4>();
+    check_choices::<f64x8>();
+    check_choices::<f32x8>();
+}
+
+#[test]
+fn what_is_not_chosen_has_no_effect() {
+    let [chosen, infinite, none] = [0.3, f64::INFINITY, f64::NAN];
+    for (condition, is_positive) in
+        [(1.0, true), (f64::INFINITY, true), (0.0, false), (-0.0, false), (-5e-324, false)]
+    {
+        let (taken, other): (fn(f64, f64) -> f64, fn(f64, f64) -> f64) =
+            if is_positive { (Scalar::when, Scalar::unless) } else { (Scalar::unless, Scalar::when) };
+        for x in [chosen, infinite, none] {
+            same(taken(condition, x), x, condition);
+            assert_eq!(other(condition, x).to_bits(), 0, "{condition}: {x}");
+        }
+        assert!(taken(none, chosen).is_nan() && other(none, chosen).is_nan());
+    }
 }
 
 #[test]

@@ -273,6 +273,17 @@ fn dual_numbers_and_symbols_agree() {
         (x.tanh().slopes[0], 1.0 - libm::tanh(0.7) * libm::tanh(0.7)),
         (x.atan2(c).slopes[0], 2.0 / (4.0 + 0.49)),
         (c.atan2(x).slopes[0], -2.0 / (4.0 + 0.49)),
+        (x.exp().slopes[0], libm::exp(0.7)),
+        (x.ln().slopes[0], 1.0 / 0.7),
+        (x.abs().slopes[0], 1.0),
+        ((-x).abs().slopes[0], 1.0),
+        (Dual { value: 0.0, slopes: [1.0] }.abs().slopes[0], 0.0),
+        (x.floor().slopes[0], 0.0),
+        (c.when(x).slopes[0], 1.0),
+        (x.unless(x).slopes[0], 0.0),
+        // The root of zero changes infinitely fast, and that of a negative number is none.
+        ((c.when(x) + c.unless((x - x).sqrt())).slopes[0], 1.0),
+        (((-c).when((-x).sqrt()) + (-c).unless(x * x)).slopes[0], 1.4),
         (sum(&[x - c, x]).slopes[0], 2.0),
         // The derivative of a table's second derivative, before a knot and at it.
         (x.spline(&[0.0, 1.0, 3.0], &TABLE)[2].slopes[0], -1.5),

@@ -230,6 +230,71 @@ mod tests {
             let tanh = Elementary.tanh(&x);
             let double = tanh.add(&tanh).div(&x.like(1.0).add(&tanh.mul(&tanh))).expect("positive");
             check(&Elementary.tanh(&x.add(&x)), &double);
+            // tanh x = (e²ˣ − 1) / (e²ˣ + 1).
+            let (exp, one) = (Elementary.exp(&x.add(&x)), x.like(1.0));
+            check(&exp.sub(&one).div(&exp.add(&one)).expect("positive"), &tanh);
+            check(&Elementary.ln(&exp), &x.add(&x));
+            check(&Elementary.abs(&x), &x.mul(&x).sqrt());
+            check(&Elementary.floor(&x), &x.like(x.to_f64().floor()));
+            check(&Elementary.when(&x, &exp).add(&Elementary.unless(&x, &exp)), &exp);
         }
+    }
+
+    #[test]
+    fn what_is_not_taken_has_no_effect() {
+        let precision = Precision::new();
+        for (condition, is_positive) in [(0.5, true), (0.0, false), (-0.5, false), (f64::NAN, false)] {
+            for x in [2.5, f64::INFINITY, f64::NAN] {
+                let real = |x: f64| Real::new(&precision, x);
+                for (function, is_taken) in [(Function::When, is_positive), (Function::Unless, !is_positive)]
+                {
+                    let expected = if condition.is_nan() || is_taken && x.is_nan() {
+                        f64::NAN
+                    } else if is_taken {
+                        x
+                    } else {
+                        0.0
+                    };
+                    let double = Elementary.call(function, [&condition, &x]);
+                    let single = Elementary.call(function, [&(condition as f32), &(x as f32)]);
+                    let fine = Elementary.call(function, [&real(condition), &real(x)]);
+                    let is_same = fine == real(expected) || fine.to_f64().is_nan() && !expected.is_finite();
+                    assert!(is_same, "{condition} {x} {fine:?}");
+                    for found in [double, f64::from(single)] {
+                        assert!(
+                            found == expected || found.is_nan() && expected.is_nan(),
+                            "{condition} {x} {found}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    /// Values of arguments in a range stay in the range of the values.
+    #[test]
+    fn ranges_hold_all_values() {
+        let ends = [-2.5, -1.0, 0.0, 0.4, 1.0, 3.7];
+        let range = |low: f64, high: f64| Range { low, high, is_nonzero: low > 0.0 || high < 0.0 };
+        let functions =
+            [Function::Exp, Function::Ln, Function::Abs, Function::Floor, Function::When, Function::Unless];
+        for function in functions {
+            for (n, &low) in ends.iter().enumerate() {
+                for &high in &ends[n..] {
+                    let (at, chosen) = (range(low, high), range(-1.5, -0.5));
+                    let found = range_of_call(function, [at, chosen]);
+                    for x in [low, (low + high) / 2.0, high] {
+                        let value = Elementary.call(function, [&x, &-1.0]);
+                        let is_within = value.is_nan() || (found.low <= value && value <= found.high);
+                        assert!(
+                            is_within && !(found.is_nonzero && value == 0.0),
+                            "{function:?} {x}: {found:?}"
+                        );
+                    }
+                }
+            }
+        }
+        assert!(range_of_call(Function::Exp, [range(-1.0, 9.0), Range::ANY]).is_nonzero);
+        assert!(!range_of_call(Function::Exp, [Range::ANY, Range::ANY]).is_nonzero, "it is rounded to zero");
     }
 }

@@ -10,8 +10,9 @@ use gyro_model::Rational;
 use num_bigint::{BigInt, BigUint, Sign};
 use std::fmt;
 
-/// Numerators and denominators of small fractions have at most so many bits, less than a quarter of a prime's.
-const SMALL_BITS: u32 = 120;
+/// Numerators and denominators of small fractions have at most so many bits: more than those of 42 digits, and so few
+/// that of 2¹⁵⁰ numbers less than one is such a fraction.
+const SMALL_BITS: u32 = 180;
 
 /// An integer modulo a prime of at most `64 L − 1` bits.
 #[derive(Clone, Copy)]
@@ -49,7 +50,8 @@ impl<'p, const L: usize> Modular<'p, L> {
     /// was drawn hardly ever is one. Euclid's algorithm passes by it.
     pub fn small_fraction(&self) -> Option<Rational> {
         let small = BigInt::from(1) << SMALL_BITS;
-        let (mut before, mut rest) = (BigInt::from(self.prime.value().clone()), BigInt::from(self.residue()?));
+        let (mut before, mut rest) =
+            (BigInt::from(self.prime.value().clone()), BigInt::from(self.residue()?));
         let (mut factor_before, mut factor) = (BigInt::from(0), BigInt::from(1));
         while rest >= small {
             let quotient = &before / &rest;

@@ -18,6 +18,19 @@ fn rates_are_limits_of_differences() {
     let root = program.push(Node::Call(Function::Sqrt, [sum; 2]), 1);
     let quotient = program.push(Node::Div(difference, root), 1);
     let angle = program.push(Node::Call(Function::Atan2, [quotient, cos]), 1);
+    let exponential = program.push(Node::Call(Function::Exp, [angle; 2]), 1);
+    let logarithm = program.push(Node::Call(Function::Ln, [exponential; 2]), 1);
+    let negative = program.push(Node::Neg(exponential), 1);
+    program.push(Node::Call(Function::Abs, [exponential; 2]), 1);
+    program.push(Node::Call(Function::Abs, [negative; 2]), 1);
+    // What is no number is not taken.
+    let nothing = program.push(Node::Call(Function::Ln, [negative; 2]), 1);
+    let taken = program.push(Node::Call(Function::When, [exponential, logarithm]), 1);
+    let not_taken = program.push(Node::Call(Function::When, [negative, nothing]), 1);
+    program.push(Node::Add(taken, not_taken), 1);
+    let taken = program.push(Node::Call(Function::Unless, [negative, logarithm]), 1);
+    let not_taken = program.push(Node::Call(Function::Unless, [exponential, nothing]), 1);
+    program.push(Node::Add(taken, not_taken), 1);
     for order in [0, 1] {
         program.push(Node::Curve { table: 0, order, time: angle }, 1);
     }
@@ -38,8 +51,14 @@ fn rates_are_limits_of_differences() {
     for (id, (after, before)) in at(&program, t + step).iter().zip(at(&program, t - step)).enumerate() {
         let expected = (after - before) / (2.0 * step);
         let rate = found[id].expect("everything moves");
+        if id == nothing {
+            continue;
+        }
         assert!((rate - expected).abs() < 1e-8 * (1.0 + rate.abs()), "{id}: {rate} {expected}");
     }
+    let whole = program.push(Node::Call(Function::Floor, [angle; 2]), 1);
+    let found = rates(&program, &at(&program, t), &tables, &Elementary, &|_| Some(1.0)).expect("derivatives");
+    assert_eq!(found[whole], None);
     program.push(Node::Curve { table: 0, order: 2, time: angle }, 1);
     let values = at(&program, t);
     assert_eq!(rates(&program, &values, &tables, &Elementary, &|_| Some(1.0)), None);

@@ -54,3 +54,11 @@ fn roots_round_to_the_nearest_double() {
     }
     assert_eq!(root("2").to_f64(), std::f64::consts::SQRT_2);
 }
+
+#[test]
+fn whole_numbers_are_below() {
+    for (text, expected) in [("2.5", 2), ("-2.5", -3), ("-3", -3), ("0", 0), ("-1e-30", -1), ("7", 7)] {
+        let constant = Constant::rational(parse_decimal(text).expect("a decimal"));
+        assert_eq!(constant.floor(), Constant::integer(expected), "{text}");
+    }
+}

@@ -51,3 +51,33 @@ fn products_and_compositions_differentiate() {
         g.div(root, sum)
     });
 }
+
+/// Points on both sides of where something changes; what is not taken is no number there.
+#[test]
+fn what_is_chosen_differentiates_by_itself() {
+    let centred = |g: &mut Graph, x: ExprId| {
+        let two = g.integer(2);
+        g.sub(x, two)
+    };
+    check(|g, x, y| {
+        let condition = centred(g, x);
+        let (size, whole) = (g.abs(condition), g.floor(condition));
+        let product = g.mul(size, y);
+        g.add(product, whole)
+    });
+    check(|g, x, y| {
+        let (condition, opposite) = (centred(g, x), centred(g, y));
+        // Small arguments would be further from differences.
+        let half = g.fraction(1, 2);
+        let (above, later) = (g.add(condition, half), g.add(opposite, half));
+        let (root, logarithm) = (g.sqrt(above), g.ln(later));
+        // Both stand alone, inside of each other, and as factors.
+        let within = g.when(opposite, logarithm);
+        let product = g.mul(root, within);
+        let (chosen, exponential) = (g.when(condition, product), g.exp(opposite));
+        let other = g.unless(condition, exponential);
+        let sum = g.add(chosen, other);
+        let scaled = g.mul(sum, x);
+        g.add(scaled, within)
+    });
+}

@@ -84,3 +84,26 @@ fn simplification_keeps_values() {
         }
     }
 }
+
+#[test]
+fn functions_of_rationals_are_known_where_they_are_exact() {
+    let mut g = Graph::new();
+    let [x, y, _] = symbols(&mut g);
+    let [above, below, two] = [g.fraction(7, 2), g.fraction(-7, 2), g.integer(2)];
+    assert_eq!([g.abs(above), g.abs(below), g.abs(Graph::ZERO)], [above, above, Graph::ZERO]);
+    let [three, minus_four] = [g.integer(3), g.integer(-4)];
+    assert_eq!([g.floor(above), g.floor(below), g.floor(two)], [three, minus_four, two]);
+    assert_eq!([g.when(two, x), g.when(Graph::ZERO, x), g.when(below, x)], [x, Graph::ZERO, Graph::ZERO]);
+    assert_eq!([g.unless(two, x), g.unless(Graph::ZERO, x), g.unless(below, x)], [Graph::ZERO, x, x]);
+    assert_eq!([g.when(x, Graph::ZERO), g.unless(x, Graph::ZERO)], [Graph::ZERO; 2]);
+    assert_eq!([g.exp(Graph::ZERO), g.abs(Graph::ZERO)], [Graph::ONE, Graph::ZERO]);
+    // An even function takes a sign away; a condition keeps it.
+    let minus_x = g.neg(x);
+    assert_eq!(g.abs(minus_x), g.abs(x));
+    assert_ne!(g.when(minus_x, y), g.when(x, y));
+    // Which side of zero a root is on is known, but nobody who checks it knows it.
+    let root = g.sqrt(two);
+    let (size, logarithm) = (g.abs(root), g.ln(two));
+    assert!(matches!(g.node(size), Node::Call(Function::Abs, _)));
+    assert!(matches!(g.node(logarithm), Node::Call(Function::Ln, _)));
+}

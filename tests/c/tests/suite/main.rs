@@ -2,6 +2,7 @@
 
 mod bits;
 mod docs;
+mod functions;
 mod hostile;
 mod languages;
 mod program;

@@ -46,6 +46,25 @@ fn roots_are_positive_and_multiply() {
 }
 
 #[test]
+fn small_fractions_are_found_and_drawn_numbers_are_none() {
+    let mut random = ChaCha8Rng::seed_from_u64(6);
+    let prime = Prime::<9>::mersenne();
+    let large: BigInt = BigInt::from(10).pow(41) + 3;
+    for numerator in [0, 1, -1, 22, -355] {
+        for denominator in [1, 7, 113] {
+            for factor in [BigInt::from(1), large.clone()] {
+                let fraction = Rational::new(&factor * numerator, denominator.into());
+                assert_eq!(Modular::from_rational(&prime, &fraction).small_fraction(), Some(fraction));
+            }
+        }
+    }
+    for _ in 0..50 {
+        assert_eq!(prime.draw(&mut random).small_fraction(), None);
+    }
+    assert_eq!(Modular::undefined(&prime).small_fraction(), None);
+}
+
+#[test]
 fn what_is_undefined_equals_nothing() {
     let prime = Prime::<9>::mersenne();
     let divisor = BigInt::from(prime.value().clone());

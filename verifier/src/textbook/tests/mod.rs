@@ -2,5 +2,6 @@
 //! kinematics.
 
 mod dynamics;
+mod functions;
 mod kinematics;
 mod support;
