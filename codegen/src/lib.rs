@@ -298,6 +298,8 @@ fn facts(system: &System) -> Facts {
         | OutputKind::Velocity(_)
         | OutputKind::Spring { .. }
         | OutputKind::Link { .. }
+        // What a formula sees is an output of its own.
+        | OutputKind::Formula(_)
         | OutputKind::Energy => false,
     };
     let tells_multipliers = |output: &Output| {

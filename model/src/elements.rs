@@ -2,7 +2,7 @@
 
 use std::slice::from_ref;
 
-use crate::{CoordinateUse, JointCoordinate, Motion, Number};
+use crate::{CoordinateUse, Formula, JointCoordinate, Motion, Number, Seen};
 
 /// A gear, a belt, a rack: `second = ratio · first + offset` between two joint coordinates, one row
 /// `second − ratio · first − offset`.
@@ -127,6 +127,16 @@ pub enum ForceKind {
         /// Frame of force and torque.
         frame: LoadFrame,
     },
+    /// `−∂V/∂x` along each joint coordinate x that occurs in the energy V, which is conservative.
+    Potential {
+        /// V, J: a formula.
+        energy: Number,
+    },
+    /// `−½ ∂P/∂ẋ` along each joint coordinate whose rate occurs in P.
+    Dissipation {
+        /// P, W: a formula.
+        power: Number,
+    },
 }
 
 /// What can be said of a force whatever its kind is.
@@ -176,16 +186,36 @@ impl ForceKind {
                 on: None,
                 numbers: vec![("point", &point[..]), ("force", force), ("torque", torque)],
             },
+            Self::Potential { energy } => {
+                ForceParts { word: "potential", on: None, numbers: vec![("energy", from_ref(energy))] }
+            }
+            Self::Dissipation { power } => {
+                ForceParts { word: "dissipation", on: None, numbers: vec![("power", from_ref(power))] }
+            }
         }
     }
 
     /// Whether it does work that no potential energy accounts for.
     pub fn does_work(&self) -> bool {
         match self {
-            Self::Spring { .. } => false,
+            Self::Spring { .. } | Self::Potential { .. } => false,
             Self::Link { damping, tension, .. } => !damping.is_zero() || !tension.is_zero(),
             _ => true,
         }
+    }
+
+    /// Of a potential or a dissipation its formula, and the coordinates along which it acts, each as the formula sees
+    /// it: the coordinate itself, or its rate.
+    pub fn slopes(&self) -> Option<(&Formula, Vec<(JointCoordinate, Seen)>)> {
+        let (Self::Potential { energy: number } | Self::Dissipation { power: number }) = self else { return None };
+        let formula = number.formula()?;
+        let is_rate = matches!(self, Self::Dissipation { .. });
+        let along = formula.sees().filter_map(|seen| match seen {
+            Seen::Coordinate(on) if !is_rate => Some((on, seen)),
+            Seen::Rate(on) if is_rate => Some((on, seen)),
+            _ => None,
+        });
+        Some((formula, along.collect()))
     }
 
     /// The points of bodies at which it acts, each with the index of its body.
@@ -288,6 +318,8 @@ pub enum OutputKind {
         /// Index into [`crate::Model::forces`], of a link.
         force: usize,
     },
+    /// The value of a formula.
+    Formula(Formula),
     /// Kinetic and potential energy, J.
     Energy,
     /// Power of all non-conservative forces, and of drivers and driven bodies, W.
@@ -305,7 +337,12 @@ impl OutputKind {
         }
     }
 
-    /// The same, to be changed.
+    /// The formula, of those that are one.
+    pub fn formula(&self) -> Option<&Formula> {
+        if let Self::Formula(formula) = self { Some(formula) } else { None }
+    }
+
+    /// The frame, to be changed.
     pub fn frame_mut(&mut self) -> Option<&mut BodyFrame> {
         match self {
             Self::Pose(frame) | Self::Velocity(frame) | Self::Acceleration(frame) | Self::Inertial(frame) => {
@@ -356,6 +393,7 @@ impl OutputKind {
             Self::Driver { .. } | Self::Coupler { .. } => &[("", "N*m or N")],
             Self::Spring { .. } => &[("force", "N*m or N"), ("deflection", "rad or m")],
             Self::Link { .. } => &[("force", "N"), ("length", "m")],
+            Self::Formula(_) => &[("", "1")],
             Self::Energy => &[("kinetic", "J"), ("potential", "J")],
             Self::Power => &[("non_conservative", "W"), ("drivers", "W")],
         }

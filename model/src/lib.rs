@@ -83,6 +83,8 @@ pub struct Model {
     pub drivers: Vec<Driver>,
     /// Forces besides gravity and the joints' own friction.
     pub forces: Vec<Force>,
+    /// Formulas that have a name. Wherever the model file names one, its operations stand in the model.
+    pub formulas: Vec<(String, Formula)>,
     /// What is to be computed besides the motion.
     pub outputs: Vec<Output>,
     /// Sampled controllers, which runs close loops with; generated code knows nothing of them.

@@ -39,6 +39,8 @@ impl Model {
         for frame in self.outputs.iter().filter_map(|output| output.kind.frame()) {
             numbers.extend(frame.point.iter().chain(frame.orientation.iter().flatten()));
         }
+        let formulas = self.outputs.iter().filter_map(|output| output.kind.formula());
+        numbers.extend(formulas.flat_map(Formula::numbers));
         self.controllers.iter().for_each(|controller| numbers.extend(controller.numbers()));
         for event in &self.events {
             numbers.push(&event.level);

@@ -159,11 +159,12 @@ impl Model {
         if self.coordinate_kind(coordinate).is_angle() { RowUnit::Pure } else { RowUnit::Length }
     }
 
-    /// What formulas of forces ask of joint coordinates.
+    /// What formulas of forces and outputs ask of joint coordinates.
     fn uses_of_formulas(&self) -> impl Iterator<Item = (JointCoordinate, CoordinateUse)> {
         let numbers = self.forces.iter().flat_map(|force| force.kind.parts().numbers);
         let formulas = numbers.flat_map(|(_, numbers)| numbers).filter_map(Number::formula);
-        formulas.flat_map(Formula::uses)
+        let outputs = self.outputs.iter().filter_map(|output| output.kind.formula());
+        formulas.chain(outputs).flat_map(Formula::uses)
     }
 
     /// The rows of one joint, coupler, driver or body among [`Model::rows`].

@@ -39,6 +39,8 @@ pub(crate) enum Leaf<T> {
     Length,
     /// The rate of that.
     LengthRate,
+    /// A number among those of all outputs.
+    Output(usize),
 }
 
 /// When a strength is asked for, and in a link at which distance of its ends and rate of that.
@@ -47,6 +49,33 @@ pub(crate) struct Now<'a, T: Number> {
     pub(crate) scene: &'a Scene<T>,
     pub(crate) at: Moment<'a, T>,
     pub(crate) line: [T; 2],
+    /// What is known of the numbers of outputs.
+    pub(crate) outputs: &'a [T],
+}
+
+impl<'a, T: Number> Now<'a, T> {
+    /// Where no link is meant, and outputs are not known.
+    pub(crate) fn new(scene: &'a Scene<T>, at: Moment<'a, T>) -> Self {
+        Self { scene, at, line: [T::zero(); 2], outputs: &[] }
+    }
+}
+
+/// What laws ask of amounts.
+pub(crate) trait Read<T> {
+    /// The value.
+    fn value(&self, amount: &Amount<T>) -> T;
+    /// The derivative by one of the numbers that a formula sees.
+    fn slope(&self, amount: &Amount<T>, by: Seen) -> T;
+}
+
+impl<T: Number> Read<T> for Now<'_, T> {
+    fn value(&self, amount: &Amount<T>) -> T {
+        amount.value(self)
+    }
+
+    fn slope(&self, amount: &Amount<T>, by: Seen) -> T {
+        amount.slope(self, by)
+    }
 }
 
 impl<T: Number> Amount<T> {
@@ -98,10 +127,11 @@ impl<T: Number> Leaf<T> {
             Seen::Rate(on) => Self::Rate(Path::Coordinate(Coordinate::of(&joints[on.joint], on.coordinate))),
             Seen::Output { output, number } => match &model.outputs[output].kind {
                 OutputKind::Pose(frame) => Self::Pose(Spot::new(model, places, frame), number),
-                OutputKind::Velocity(frame) | OutputKind::Inertial(frame) => {
+                OutputKind::Velocity(frame) => Self::Velocity(Spot::new(model, places, frame), number),
+                OutputKind::Inertial(frame) if number >= 3 => {
                     Self::Velocity(Spot::new(model, places, frame), number)
                 }
-                OutputKind::Link { force } => match &model.forces[*force].kind {
+                OutputKind::Link { force } if number == 1 => match &model.forces[*force].kind {
                     ForceKind::Link { first, second, .. } => {
                         let end =
                             |(body, point): &(usize, _)| (places.of(*body), vector(model.values(point)));
@@ -109,7 +139,10 @@ impl<T: Number> Leaf<T> {
                     }
                     _ => unreachable!("the output is one of a link"),
                 },
-                _ => unreachable!("the reader refuses outputs that follow from forces"),
+                _ => {
+                    let before = model.outputs[..output].iter().map(|output| output.kind.columns().len());
+                    Self::Output(before.sum::<usize>() + number)
+                }
             },
         }
     }
@@ -126,8 +159,65 @@ impl<T: Number> Leaf<T> {
             Self::Velocity(spot, number) => spot.velocity(&scene.motion(at, &spot.place))[*number],
             Self::Length => now.line[0],
             Self::LengthRate => now.line[1],
+            Self::Output(place) => now.outputs.get(*place).copied().unwrap_or_else(T::zero),
         }
     }
+}
+
+impl<T: Number> Amount<T> {
+    /// The derivative of a formula by one of the numbers that it sees, which are independent of one another.
+    pub(crate) fn slope(&self, now: &Now<'_, T>, by: Seen) -> T {
+        let Self::Formula(formula) = self else { return T::zero() };
+        let (formula, leaves) = &**formula;
+        let pair = formula.value(|operation, values: &[(T, T)]| {
+            Ok::<_, Infallible>(match operation {
+                Operation::Number(_) | Operation::Seen(_) => {
+                    let is_it = *operation == Operation::Seen(by);
+                    let value = leaves[values.len()].as_ref().map_or(T::zero(), |leaf| leaf.value(now));
+                    (value, if is_it { T::one() } else { T::zero() })
+                }
+                Operation::Negative(a) => (-values[*a].0, -values[*a].1),
+                Operation::Sum(a, b) => (values[*a].0 + values[*b].0, values[*a].1 + values[*b].1),
+                Operation::Difference(a, b) => (values[*a].0 - values[*b].0, values[*a].1 - values[*b].1),
+                Operation::Product(a, b) => {
+                    let ((a, da), (b, db)) = (values[*a], values[*b]);
+                    (a * b, da * b + a * db)
+                }
+                Operation::Quotient(a, b) => {
+                    let ((a, da), (b, db)) = (values[*a], values[*b]);
+                    (a / b, (da * b - a * db) / (b * b))
+                }
+                Operation::Power(a, exponent) => {
+                    let (a, da) = values[*a];
+                    let factor = number::<T>(f64::from(*exponent)) * power(a, exponent - 1);
+                    (power(a, *exponent), factor * da)
+                }
+                Operation::Call(function, operands) => call_with_slope(*function, operands.map(|a| values[a])),
+            })
+        });
+        let Ok((_, slope)) = pair;
+        slope
+    }
+}
+
+/// A function with its derivative, by the chain rule.
+fn call_with_slope<T: Number>(function: Function, [(x, dx), (y, dy)]: [(T, T); 2]) -> (T, T) {
+    let value = call(function, [x, y]);
+    let (zero, one) = (T::zero(), T::one());
+    let slope = match function {
+        Function::Sqrt => dx / (value + value),
+        Function::Sin => call(Function::Cos, [x, x]) * dx,
+        Function::Cos => -call(Function::Sin, [x, x]) * dx,
+        Function::Tanh => (one - value * value) * dx,
+        Function::Atan2 => (y * dx - x * dy) / (x * x + y * y),
+        Function::Exp => value * dx,
+        Function::Ln => dx / x,
+        Function::Abs => if_positive(x, dx, if_positive(-x, -dx, zero)),
+        Function::Floor => zero,
+        Function::When => if_positive(x, dy, zero),
+        Function::Unless => if_positive(x, zero, dy),
+    };
+    (value, slope)
 }
 
 /// The value of a formula, given the numbers that it begins with, by the places of their operations.

@@ -32,9 +32,8 @@ impl<T: Number> Lowered<T> {
         }
         for element in &self.elements {
             if let Element::Along { path, law } = element {
-                let now = Now { scene: &self.scene, at, line: [T::zero(); 2] };
-                energy.potential +=
-                    law.potential(|amount| amount.value(&now), || path.value(&self.scene, at));
+                let now = Now::new(&self.scene, at);
+                energy.potential += law.potential(&now, || path.value(&self.scene, at));
             }
         }
         for rotor in &self.rotors {

@@ -73,6 +73,20 @@ impl<T: Number> Element<T> {
                 torque: torque.each_ref().map(amount),
                 frame: *frame,
             }],
+            ForceKind::Potential { energy: number } | ForceKind::Dissipation { power: number } => {
+                let along = kind.slopes().map(|(_, along)| along).unwrap_or_default();
+                let one = |(index, (on, by)): (usize, (gyro_model::JointCoordinate, _))| {
+                    let path = Path::Coordinate(Coordinate::of(&joints[on.joint], on.coordinate));
+                    let law = match kind {
+                        ForceKind::Potential { .. } => {
+                            Law::Descent { energy: amount(number), by, tells: index == 0 }
+                        }
+                        _ => Law::Loss { power: amount(number), by },
+                    };
+                    Self::Along { path, law }
+                };
+                along.into_iter().enumerate().map(one).collect()
+            }
             kind => {
                 let along = kind.parts().on.zip(Law::of(kind, amount)).map(|((on, _), law)| {
                     let path = Path::Coordinate(Coordinate::of(&joints[on.joint], on.coordinate));
@@ -101,9 +115,9 @@ impl<T: Number> Element<T> {
                 let motions = places.map(|place| scene.motion(at, place));
                 let grip = path.grip(scene, &motions);
                 let x = || path.value(scene, at);
-                let now = |line| Now { scene, at, line };
-                let now = if let Path::Line(_) = path { now([x(), grip.rate]) } else { now([T::zero(); 2]) };
-                let force = law.force(|amount| amount.value(&now), x, grip.rate);
+                let now = Now::new(scene, at);
+                let now = if let Path::Line(_) = path { Now { line: [x(), grip.rate], ..now } } else { now };
+                let force = law.force(&now, x, grip.rate);
                 for ((place, motion), wrench) in places.into_iter().zip(&motions).zip(&grip.wrenches) {
                     sink(place, motion, wrench.times(force));
                 }
@@ -117,7 +131,7 @@ impl<T: Number> Element<T> {
             }
             Self::Load { place, point, force, torque, frame } => {
                 let motion = scene.motion(at, place);
-                let now = Now { scene, at, line: [T::zero(); 2] };
+                let now = Now::new(scene, at);
                 let [force, torque] =
                     [force, torque].map(|v| Vector3::from(v.each_ref().map(|x| x.value(&now))));
                 // Both in the body's frame.

@@ -1,8 +1,8 @@
 //! Laws of force along a coordinate: [`gyro_model::ForceKind`].
 
-use crate::model::amount::Amount;
+use crate::model::amount::{Amount, Read};
 use crate::number::{Number, number, sqrt, tanh};
-use gyro_model::{ForceKind, Number as PageNumber, StopSide};
+use gyro_model::{ForceKind, Number as PageNumber, Seen, StopSide};
 
 /// A force as a function of a coordinate x and its rate.
 #[derive(Clone, Debug)]
@@ -20,6 +20,10 @@ pub(crate) enum Law<T> {
     Motor { value: Amount<T> },
     /// Minus what is given.
     Pull { tension: Amount<T> },
+    /// Minus the slope of an energy by the coordinate; one law of each energy tells how much it is.
+    Descent { energy: Amount<T>, by: Seen, tells: bool },
+    /// Minus half the slope of a power by the rate.
+    Loss { power: Amount<T>, by: Seen },
 }
 
 impl<T: Number> Law<T> {
@@ -38,17 +42,21 @@ impl<T: Number> Law<T> {
                 Self::Stop { limit, side: *side, stiffness, damping, softness }
             }
             ForceKind::Motor { on: _, value } => Self::Motor { value: amount(value) },
-            ForceKind::Link { .. } | ForceKind::Load { .. } => return None,
+            ForceKind::Link { .. }
+            | ForceKind::Load { .. }
+            | ForceKind::Potential { .. }
+            | ForceKind::Dissipation { .. } => return None,
         })
     }
 
     /// Whether the force is minus the slope of [`Law::potential`].
     pub(crate) fn is_conservative(&self) -> bool {
-        matches!(self, Self::Spring { .. })
+        matches!(self, Self::Spring { .. } | Self::Descent { .. })
     }
 
     /// The force at a coordinate, which only some laws ask for, and a rate, with the values of amounts.
-    pub(crate) fn force(&self, value: impl Fn(&Amount<T>) -> T, x: impl FnOnce() -> T, rate: T) -> T {
+    pub(crate) fn force(&self, read: &impl Read<T>, x: impl FnOnce() -> T, rate: T) -> T {
+        let value = |amount: &Amount<T>| read.value(amount);
         match self {
             Self::Spring { stiffness, free } => -value(stiffness) * (x() - value(free)),
             Self::Damper { damping } => -value(damping) * rate,
@@ -62,16 +70,20 @@ impl<T: Number> Law<T> {
             }
             Self::Motor { value: amount } => value(amount),
             Self::Pull { tension } => -value(tension),
+            Self::Descent { energy, by, tells: _ } => -read.slope(energy, *by),
+            Self::Loss { power, by } => -read.slope(power, *by) * number(0.5),
         }
     }
 
     /// The energy that a conservative force holds; zero of all others.
-    pub(crate) fn potential(&self, value: impl Fn(&Amount<T>) -> T, x: impl FnOnce() -> T) -> T {
+    pub(crate) fn potential(&self, read: &impl Read<T>, x: impl FnOnce() -> T) -> T {
+        let value = |amount: &Amount<T>| read.value(amount);
         match self {
             Self::Spring { stiffness, free } => {
                 let stretch = x() - value(free);
                 value(stiffness) * stretch * stretch * number(0.5)
             }
+            Self::Descent { energy, tells: true, .. } => value(energy),
             _ => T::zero(),
         }
     }

@@ -17,11 +17,19 @@ impl<T: Number> Lowered<T> {
 
     /// Writes all outputs.
     pub(crate) fn outputs(&self, at: Moment<'_, T>, solution: Solution<'_, T>, out: &mut [T]) {
-        let mut rest = out;
+        let mut rest = &mut *out;
         for output in &self.outputs {
             let (out, after) = rest.split_at_mut(output.columns.len());
             self.output(at, solution, &output.quantity, out);
             rest = after;
+        }
+        // Formulas may see all others.
+        let mut place = 0;
+        for output in &self.outputs {
+            if let Quantity::Formula(formula) = &output.quantity {
+                out[place] = formula.value(&Now { outputs: out, ..Now::new(&self.scene, at) });
+            }
+            place += output.columns.len();
         }
     }
 
@@ -52,7 +60,7 @@ impl<T: Number> Lowered<T> {
                 let motions = places.map(|place| self.scene.motion(at, place));
                 let (x, rate) =
                     (elastic.path.value(&self.scene, at), elastic.path.grip(&self.scene, &motions).rate);
-                let now = Now { scene: &self.scene, at, line: [x, rate] };
+                let now = Now { line: [x, rate], ..Now::new(&self.scene, at) };
                 let value = |amount: &Amount<T>| amount.value(&now);
                 let deflection = x - value(&elastic.free);
                 let spring = -value(&elastic.stiffness) * deflection;
@@ -60,6 +68,7 @@ impl<T: Number> Lowered<T> {
                 out[1] = if elastic.is_link { x } else { deflection };
             }
             Quantity::Load(row) => out[0] = row.map_or(T::zero(), |row| -solution.lambda[row]),
+            Quantity::Formula(_) => out[0] = T::zero(),
             Quantity::Energy => {
                 let energy = self.energy(at);
                 (out[0], out[1]) = (energy.kinetic, energy.potential);

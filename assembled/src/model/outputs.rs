@@ -29,6 +29,8 @@ pub(crate) enum Quantity<T> {
     Load(Option<usize>),
     /// A spring along its coordinate, or a link along its line.
     Elastic(Elastic<T>),
+    /// A formula, which may see other outputs.
+    Formula(Amount<T>),
     Energy,
     Power,
 }
@@ -108,6 +110,10 @@ impl<T: Number> Output<T> {
             }
             OutputKind::Spring { force } | OutputKind::Link { force } => {
                 Quantity::Elastic(Elastic::new(model, (places, joints), &model.forces[*force].kind))
+            }
+            OutputKind::Formula(formula) => {
+                let number = gyro_model::Number::Formula(formula.clone().into());
+                Quantity::Formula(Amount::new(model, (places, joints), &number))
             }
             OutputKind::Energy => Quantity::Energy,
             OutputKind::Power => Quantity::Power,

@@ -42,8 +42,26 @@ pub fn along_coordinates(system: &mut System, readings: &impl Readings) -> Vec<A
             all.push(damper(system, readings, on, &joint.damping));
         }
     }
-    all.extend(forces.iter().filter_map(|force| along(system, readings, force)));
+    for force in forces {
+        all.extend(along(system, readings, force));
+        all.extend(along_slopes(system, readings, &force.kind));
+    }
     all
+}
+
+/// `−∂V/∂x` along each coordinate of a potential, `−½ ∂P/∂ẋ` along each of a dissipation.
+fn along_slopes(system: &mut System, readings: &impl Readings, kind: &ForceKind) -> Vec<Along> {
+    let Some((formula, along)) = kind.slopes() else { return Vec::new() };
+    let stores = matches!(kind, ForceKind::Potential { .. });
+    let one = |(index, (on, by))| {
+        let (value, slope) = laws::with_slope(system, formula, readings, by);
+        let half = system.graph.fraction(1, 2);
+        let pull = if stores { slope } else { system.graph.mul(half, slope) };
+        // The energy is stored once.
+        let potential = stores.then_some(if index == 0 { value } else { Graph::ZERO });
+        Along { on, force: system.graph.neg(pull), potential }
+    };
+    along.into_iter().enumerate().map(one).collect()
 }
 
 fn along(system: &mut System, readings: &impl Readings, force: &Force) -> Option<Along> {
@@ -73,7 +91,10 @@ fn along(system: &mut System, readings: &impl Readings, force: &Force) -> Option
         ForceKind::Motor { on, value } => {
             Some(Along { on: *on, force: laws::strength(system, readings, value), potential: None })
         }
-        ForceKind::Link { .. } | ForceKind::Load { .. } => None,
+        ForceKind::Link { .. }
+        | ForceKind::Load { .. }
+        | ForceKind::Potential { .. }
+        | ForceKind::Dissipation { .. } => None,
     }
 }
 

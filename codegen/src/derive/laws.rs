@@ -3,9 +3,11 @@
 use crate::derive::joint_coordinate;
 use crate::derive::points::{self, PointOfBody};
 use crate::derive::system::System;
+use crate::expr::elementary;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use gyro_model::{ForceKind, Formula, JointCoordinate, Number, Operation, OutputKind, Seen};
+use gyro_program::elementary::Function;
 use std::convert::Infallible;
 
 /// What laws read of joint coordinates.
@@ -49,7 +51,12 @@ pub fn strength(system: &mut System, readings: &impl Readings, number: &Number) 
 
 fn read(system: &mut System, readings: &impl Readings, line: Option<&Line>, number: &Number) -> ExprId {
     let Number::Formula(formula) = number else { return system.number(number) };
-    value(system, formula, |system, seen| match (seen, line) {
+    value(system, formula, |system, seen| see(system, readings, line, seen))
+}
+
+/// A number of the mechanism, before accelerations are known.
+pub fn see(system: &mut System, readings: &impl Readings, line: Option<&Line>, seen: Seen) -> ExprId {
+    match (seen, line) {
         (Seen::Coordinate(on), _) => readings.value(system, on),
         (Seen::Rate(on), _) => readings.rate(system, on),
         (Seen::Time, _) => system.graph.symbol(Symbol::Time),
@@ -57,7 +64,7 @@ fn read(system: &mut System, readings: &impl Readings, line: Option<&Line>, numb
         (Seen::Length, Some(line)) => line.length,
         (Seen::LengthRate, Some(line)) => line.rate,
         (Seen::Length | Seen::LengthRate, None) => unreachable!("the reader knows lengths in links only"),
-    })
+    }
 }
 
 /// A number of an output of position or velocity.
@@ -90,20 +97,79 @@ pub fn value(
     mut see: impl FnMut(&mut System, Seen) -> ExprId,
 ) -> ExprId {
     let value = formula.value(|operation, values: &[ExprId]| {
-        Ok::<_, Infallible>(match operation {
-            Operation::Number(number) => system.number(number),
-            Operation::Seen(seen) => see(system, *seen),
-            Operation::Negative(a) => system.graph.neg(values[*a]),
-            Operation::Sum(a, b) => system.graph.add(values[*a], values[*b]),
-            Operation::Difference(a, b) => system.graph.sub(values[*a], values[*b]),
-            Operation::Product(a, b) => system.graph.mul(values[*a], values[*b]),
-            Operation::Quotient(a, b) => system.graph.div(values[*a], values[*b]),
-            Operation::Power(a, exponent) => power(system, values[*a], *exponent),
-            Operation::Call(function, operands) => system.graph.call(*function, operands.map(|a| values[a])),
-        })
+        Ok::<_, Infallible>(one(system, operation, |place| values[place], &mut see))
     });
     let Ok(value) = value;
     value
+}
+
+/// The value of one operation.
+fn one(
+    system: &mut System,
+    operation: &Operation,
+    of: impl Fn(usize) -> ExprId,
+    mut see: impl FnMut(&mut System, Seen) -> ExprId,
+) -> ExprId {
+    match operation {
+        Operation::Number(number) => system.number(number),
+        Operation::Seen(seen) => see(system, *seen),
+        Operation::Negative(a) => system.graph.neg(of(*a)),
+        Operation::Sum(a, b) => system.graph.add(of(*a), of(*b)),
+        Operation::Difference(a, b) => system.graph.sub(of(*a), of(*b)),
+        Operation::Product(a, b) => system.graph.mul(of(*a), of(*b)),
+        Operation::Quotient(a, b) => system.graph.div(of(*a), of(*b)),
+        Operation::Power(a, exponent) => power(system, of(*a), *exponent),
+        Operation::Call(function, operands) => system.graph.call(*function, operands.map(of)),
+    }
+}
+
+/// The value of a formula and its derivative by one of the numbers that it sees, which are independent of one another.
+pub fn with_slope(
+    system: &mut System,
+    formula: &Formula,
+    readings: &impl Readings,
+    by: Seen,
+) -> (ExprId, ExprId) {
+    let pair = formula.value(|operation, values: &[(ExprId, ExprId)]| {
+        let value_of = |place: usize| values[place].0;
+        let slope_of = |place: usize| values[place].1;
+        let value = one(system, operation, value_of, |system, seen| see(system, readings, None, seen));
+        let graph = &mut system.graph;
+        let slope = match operation {
+            Operation::Number(_) => Graph::ZERO,
+            Operation::Seen(seen) => if *seen == by { Graph::ONE } else { Graph::ZERO },
+            Operation::Negative(a) => graph.neg(slope_of(*a)),
+            Operation::Sum(a, b) => graph.add(slope_of(*a), slope_of(*b)),
+            Operation::Difference(a, b) => graph.sub(slope_of(*a), slope_of(*b)),
+            Operation::Product(a, b) => {
+                graph.dot(&[slope_of(*a), value_of(*a)], &[value_of(*b), slope_of(*b)])
+            }
+            // (a/b)' = (a' − (a/b) b') / b
+            Operation::Quotient(a, b) => {
+                let taken = graph.mul(value, slope_of(*b));
+                let rest = graph.sub(slope_of(*a), taken);
+                graph.div(rest, value_of(*b))
+            }
+            // (aⁿ)' = n aⁿ⁻¹ a'
+            Operation::Power(a, exponent) => {
+                let factor = graph.integer(i64::from(*exponent));
+                let less = power(system, value_of(*a), exponent - 1);
+                let factor = system.graph.mul(factor, less);
+                system.graph.mul(factor, slope_of(*a))
+            }
+            // What is not taken may change infinitely fast: it must not be multiplied by zero.
+            Operation::Call(function @ (Function::When | Function::Unless), [condition, taken]) => {
+                graph.call(*function, [value_of(*condition), slope_of(*taken)])
+            }
+            Operation::Call(function, operands) => {
+                let slopes = elementary::slopes(graph, *function, operands.map(value_of), value);
+                graph.dot(&slopes, &operands.map(slope_of))
+            }
+        };
+        Ok::<_, Infallible>((value, slope))
+    });
+    let Ok(pair) = pair;
+    pair
 }
 
 fn power(system: &mut System, base: ExprId, exponent: i32) -> ExprId {

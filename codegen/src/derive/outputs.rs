@@ -4,6 +4,7 @@ use crate::derive::dynamics::Dynamics;
 use crate::derive::forces;
 use crate::derive::joint_coordinate::Load;
 use crate::derive::kinematics::Kinematics;
+use crate::derive::laws::{self, OfBodies};
 use crate::derive::points::{self, by_axes};
 use crate::derive::system::System;
 use crate::expr::differentiate::Derivative;
@@ -11,7 +12,7 @@ use crate::expr::differentiate::Direction;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Vec3, ZERO3};
-use gyro_model::{BodyFrame, OutputKind, RowOwner};
+use gyro_model::{BodyFrame, Formula, OutputKind, RowOwner, Seen};
 use std::array::from_fn;
 
 /// What outputs are made of besides the state.
@@ -69,9 +70,21 @@ fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<Exp
             vec![rows.fold(Graph::ZERO, |sum, row| system.graph.sub(sum, sources.lambda[row]))]
         }
         OutputKind::Spring { force } | OutputKind::Link { force } => forces::elastic(system, *force).to_vec(),
+        OutputKind::Formula(formula) => vec![formula_value(system, sources, formula)],
         OutputKind::Energy => vec![sources.dynamics.kinetic, sources.dynamics.potential],
         OutputKind::Power => vec![sources.dynamics.power, drivers_power(system, sources)],
     }
+}
+
+/// The value of a formula, which may see other outputs.
+fn formula_value(system: &mut System, sources: &Sources, formula: &Formula) -> ExprId {
+    laws::value(system, formula, |system, seen| match seen {
+        Seen::Output { output, number } => {
+            let kind = &system.model.outputs[output].kind;
+            numbers(system, sources, kind)[number]
+        }
+        seen => laws::see(system, &OfBodies, None, seen),
+    })
 }
 
 /// Acceleration of a point, global frame, `r̈ = s̈ + A (ẇ' × c + w' × (w' × c))`, and ẇ'.

@@ -94,6 +94,18 @@ pub static FORCE: Table = Table::new(
             word("frame", &[("global", ""), ("body", "")], "").or("\"global\""),
         ],
     ),
+    kind(
+        "potential",
+        "−∂`energy`/∂x along each joint coordinate x that the formula names; the energy is stored",
+        &[strength("energy", "J", "a formula of joint coordinates").required().eg("energy = \"...\", in J")],
+    ),
+    kind(
+        "dissipation",
+        "−½ ∂`power`/∂ẋ along each joint coordinate whose rate ẋ the formula names",
+        &[strength("power", "W", "a formula of rates: if it is quadratic in them, the power that is lost")
+            .required()
+            .eg("power = \"...\", in W")],
+    ),
 ]);
 
 /// `first` and `second` of a link.

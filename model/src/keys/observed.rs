@@ -49,6 +49,7 @@ pub static OUTPUT: Table = Table::new(
     ),
     kind("spring", "torque or force of the spring (N·m or N), and its deflection (rad or m)", FORCE),
     kind("link", "force with which the link pushes its ends apart (N), and its length (m)", FORCE),
+    kind("formula", "the value of a formula, see [laws](laws.md)", &[text("of", "the formula").required().eg("of = \"...\"")]),
     kind("energy", "kinetic and potential energy (J)", &[]),
     kind("power", "power of all non-conservative forces, and of drivers and driven bodies (W)", &[]),
 ]);
@@ -135,6 +136,16 @@ pub static EVENT: Table = Table::new(
         number("level", "", "the level").or("0"),
         word("direction", DIRECTIONS, "which crossings count").or("\"both\""),
         flag("stop", "whether the run ends at the first one"),
+    ],
+);
+
+/// `[[formula]]`.
+pub static FORMULA: Table = Table::new(
+    "formula",
+    "A formula that has a name, for use in others, see [laws](laws.md).",
+    &[
+        name("name, unlike those of joints, outputs, parameters and inputs"),
+        text("of", "the formula").required().eg("of = \"...\""),
     ],
 );
 

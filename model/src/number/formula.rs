@@ -43,6 +43,11 @@ impl Formula {
         Self { text: name.to_owned(), operations: vec![Operation::Seen(seen)] }
     }
 
+    /// Nothing.
+    pub(crate) fn zero() -> Self {
+        Self { text: "0".to_owned(), operations: vec![Operation::Number(Number::integer(0))] }
+    }
+
     /// It less another.
     #[must_use]
     pub(crate) fn minus(&self, other: &Self) -> Self {

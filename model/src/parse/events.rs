@@ -1,7 +1,7 @@
 //! Events.
 
-use super::formulas;
-use super::laws::{self, Inputs};
+use super::formulas::{self, Inputs};
+use super::laws;
 use super::numbers::wrong_within;
 use super::reader::Reader;
 use super::section::{Item, Section};

@@ -56,6 +56,14 @@ impl Reading<'_, '_, '_> {
             },
             "motor" => ForceKind::Motor { on: self.on(), value: self.number("value") },
             "link" => self.link(),
+            "potential" => {
+                let energy = self.number("energy");
+                self.sloping("energy", ForceKind::Potential { energy })
+            }
+            "dissipation" => {
+                let power = self.number("power");
+                self.sloping("power", ForceKind::Dissipation { power })
+            }
             _ => self.load(),
         }
     }
@@ -84,6 +92,22 @@ impl Reading<'_, '_, '_> {
             free_length: self.number("free_length"),
             tension: self.number("tension"),
         }
+    }
+
+    /// What acts by the slopes of a formula, which must not be zero for want of names.
+    fn sloping(&mut self, key: &'static str, kind: ForceKind) -> ForceKind {
+        let place = self.section.place(key);
+        let acts = kind.slopes().is_some_and(|(_, along)| !along.is_empty());
+        if let Some(item) = self.section.get(key).filter(|_| !acts && !self.reader.is_doubted(place)) {
+            let what = if key == "energy" { "a joint coordinate" } else { "the rate of a joint coordinate" };
+            let words = [
+                format!("the `{key}` of {} does not name {what}", self.section.title),
+                "acts on nothing".to_owned(),
+                format!("write a formula of {what}"),
+            ];
+            item.wrong(self.reader, words);
+        }
+        kind
     }
 
     /// A body and a point on it.

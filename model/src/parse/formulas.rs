@@ -18,10 +18,19 @@ pub(super) struct Named<'m> {
     pub(super) number: &'m dyn Fn(&str) -> Option<Number>,
     /// The names of all of these, for messages.
     pub(super) numbers: &'m [&'m str],
+    /// Whether inputs may stand here.
+    pub(super) inputs: Inputs,
     /// Formulas that have a name.
     pub(super) formulas: &'m [(String, Formula)],
     /// What may not stand here: message, label and help.
     pub(super) refuse: &'m dyn Fn(&str, Seen) -> Option<[String; 3]>,
+}
+
+/// Whether a formula may name inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Inputs {
+    Known,
+    Unknown,
 }
 
 /// Nothing is refused.
@@ -152,6 +161,10 @@ impl Build<'_, '_> {
         for operation in &formula.operations {
             let place = match operation {
                 Operation::Seen(seen) => self.seen(term, name, *seen)?,
+                Operation::Number(Number::Input { .. }) if self.named.inputs == Inputs::Unknown => {
+                    let message = format!("the formula `{name}` depends on an input");
+                    return Err(fault(term, &message, "write a formula without inputs here"));
+                }
                 other => self.push(other.moved(|place| places[place])),
             };
             places.push(place);
@@ -363,8 +376,10 @@ pub(crate) fn formula_of(model: &Model, text: &str) -> Result<Formula, String> {
         index.map(|index| Number::Parameter { index, negated: false }).or_else(derived)
     };
     let numbers: Vec<&str> = model.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-    let (columns, formulas) = (&model.visible(), &[]);
-    let named = Named { columns, number: &number, numbers: &numbers, formulas, refuse: &any };
+    let columns = &model.visible();
+    let formulas = &model.formulas;
+    let inputs = Inputs::Unknown;
+    let named = Named { columns, number: &number, numbers: &numbers, inputs, formulas, refuse: &any };
     named.varying(text).map_err(|Fault { words: [message, _, help], .. }| format!("{message}; {help}"))
 }
 

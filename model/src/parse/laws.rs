@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::computed::Fault;
-use super::formulas::Named;
+use super::formulas::{Inputs, Named};
 use super::numbers::{named, wrong_within};
 use super::reader::Reader;
 use super::section::Item;
@@ -18,8 +18,15 @@ const LENGTHS: [(&str, Seen); 2] = [("length", Seen::Length), ("length rate", Se
 pub(super) fn strength(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Number> {
     let known = known(reader, item);
     let kinds = reader.outputs.clone();
-    let refuse = |name: &str, seen: Seen| refused(&kinds, name, seen);
-    match with_names(reader, &known, Inputs::Known, &refuse, |named| named.formula(text)) {
+    let is_energy = item.key.name == "energy";
+    let refuse = |name: &str, seen: Seen| match (item.key.name, seen) {
+        ("energy", Seen::Coordinate(_)) | ("power", Seen::Coordinate(_) | Seen::Rate(_) | Seen::Time) => None,
+        ("energy", _) => Some(beside_coordinates(name)),
+        ("power", _) => Some(beside_rates(name)),
+        _ => refused(&kinds, name, seen),
+    };
+    let inputs = if is_energy { Inputs::Unknown } else { Inputs::Known };
+    match with_names(reader, &known, inputs, &refuse, |named| named.formula(text)) {
         Ok(formula) => Some(match formula.operations.as_slice() {
             [Operation::Number(number)] => number.clone(),
             _ => Number::Formula(Arc::new(formula)),
@@ -33,6 +40,23 @@ pub(super) fn strength(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> O
             None
         }
     }
+}
+
+fn beside_coordinates(name: &str) -> [String; 3] {
+    [
+        format!("an energy cannot depend on `{name}`"),
+        "not a joint coordinate".to_owned(),
+        "write a formula of joint coordinates and parameters: what depends on rates, time or inputs stores no energy"
+            .to_owned(),
+    ]
+}
+
+fn beside_rates(name: &str) -> [String; 3] {
+    [
+        format!("a lost power cannot depend on `{name}`"),
+        "neither a joint coordinate nor its rate".to_owned(),
+        "write a formula of rates, joint coordinates, time, parameters and inputs".to_owned(),
+    ]
 }
 
 /// Whether a name in place of a strength is one of what moves.
@@ -76,13 +100,6 @@ pub(super) fn is_name(text: &str) -> bool {
     text.chars().all(is_part) && !text.starts_with(|c: char| c.is_ascii_digit()) && !text.contains(" - ")
 }
 
-/// Whether a formula may name inputs.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Inputs {
-    Known,
-    Unknown,
-}
-
 /// What reads a formula, with the names that the model file gives to numbers.
 pub(super) fn with_names<T>(
     reader: &Reader<'_>,
@@ -91,14 +108,14 @@ pub(super) fn with_names<T>(
     refuse: &dyn Fn(&str, Seen) -> Option<[String; 3]>,
     read: impl FnOnce(&Named<'_>) -> Result<T, Fault>,
 ) -> Result<T, Fault> {
-    let inputs: &[String] = if inputs == Inputs::Known { &reader.inputs } else { &[] };
+    let known: &[String] = if inputs == Inputs::Known { &reader.inputs } else { &[] };
     let input = |name: &str| {
-        let index = inputs.iter().position(|input| input == name);
+        let index = known.iter().position(|input| input == name);
         index.map(|index| Number::Input { index, negated: false })
     };
     let number = |name: &str| named(reader, name).or_else(|| input(name));
     let derived = reader.derived.iter().map(|(name, _)| name);
     let numbers: Vec<&str> =
-        reader.parameters.iter().chain(derived).chain(inputs).map(String::as_str).collect();
-    read(&Named { columns, number: &number, numbers: &numbers, formulas: &reader.formulas, refuse })
+        reader.parameters.iter().chain(derived).chain(known).map(String::as_str).collect();
+    read(&Named { columns, number: &number, numbers: &numbers, inputs, formulas: &reader.formulas, refuse })
 }

@@ -17,6 +17,7 @@ mod kinds;
 mod laws;
 mod lines;
 mod motion;
+mod named_formulas;
 mod names;
 mod numbers;
 mod outputs;

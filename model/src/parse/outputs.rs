@@ -1,20 +1,52 @@
 //! Outputs: what is to be computed besides the motion.
 
+use super::formulas::Inputs;
+use super::laws;
+use super::numbers::wrong_within;
 use super::reader::Reader;
-use super::section::Section;
+use super::section::{Item, Section};
 use super::{references, tables};
 use crate::validate::Owner;
-use crate::{BodyFrame, Output, OutputKind};
+use crate::{BodyFrame, Formula, Output, OutputKind, Seen};
+
+/// Outputs that are formulas, by their places: they are read once all names are known.
+pub(super) type Pending<'t> = Vec<(usize, Item<'t>, &'t str)>;
 
 /// Reads all outputs.
-pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Output> {
+pub(super) fn read<'t>(reader: &mut Reader<'_>, page: &Section<'t>) -> (Vec<Output>, Pending<'t>) {
     let sections = tables::each(reader, page, "output", Owner::Output).into_iter();
-    sections
-        .map(|(mut section, name)| {
-            let kind = section.read_kind(reader, |_, _| None).map_or("energy", |kind| kind.word);
-            Output { name, kind: output(reader, &section, kind) }
+    let mut pending = Pending::new();
+    let outputs = sections.enumerate().map(|(index, (mut section, name))| {
+        let kind = section.read_kind(reader, |_, _| None).map_or("energy", |kind| kind.word);
+        if kind == "formula" {
+            let of = section.find(reader, "of").and_then(|item| Some((index, item, item.text(reader)?)));
+            pending.extend(of);
+        }
+        Output { name, kind: output(reader, &section, kind) }
+    });
+    (outputs.collect(), pending)
+}
+
+/// Reads the formulas of outputs.
+pub(super) fn read_formulas(reader: &mut Reader<'_>, pending: Pending<'_>, outputs: &mut [Output]) {
+    let known = reader.visible.clone();
+    let kinds = reader.outputs.clone();
+    let refuse = |name: &str, seen: Seen| {
+        let Seen::Output { output, .. } = seen else { return None };
+        kinds[output].formula().map(|_| {
+            [
+                format!("`{name}` is an output by formula"),
+                "not known yet".to_owned(),
+                "write a [[formula]] with a name, and name it in both outputs".to_owned(),
+            ]
         })
-        .collect()
+    };
+    for (index, item, text) in pending {
+        match laws::with_names(reader, &known, Inputs::Known, &refuse, |named| named.formula(text)) {
+            Ok(formula) => outputs[index].kind = OutputKind::Formula(formula),
+            Err(fault) => wrong_within(reader, item, text, fault),
+        }
+    }
 }
 
 fn output(reader: &mut Reader<'_>, section: &Section<'_>, kind: &str) -> OutputKind {
@@ -27,6 +59,7 @@ fn output(reader: &mut Reader<'_>, section: &Section<'_>, kind: &str) -> OutputK
         "link" => OutputKind::Link { force: index("force") },
         "power" => OutputKind::Power,
         "energy" => OutputKind::Energy,
+        "formula" => OutputKind::Formula(Formula::seen("t", Seen::Time)),
         "velocity" => OutputKind::Velocity(frame(reader, section)),
         "acceleration" => OutputKind::Acceleration(frame(reader, section)),
         "inertial" => OutputKind::Inertial(frame(reader, section)),

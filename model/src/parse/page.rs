@@ -8,7 +8,7 @@ use super::names;
 use super::reader::Reader;
 use super::section::{Section, keyword};
 use super::{
-    bodies, contacts, controllers, couplings, events, forces, joints, outputs, parameters, point_masses,
+    bodies, contacts, controllers, couplings, events, forces, joints, named_formulas, outputs, parameters, point_masses,
     seen, simulation,
 };
 use crate::keys::{FILE, GENERATE};
@@ -42,10 +42,12 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     }
     let named = contacts.iter().map(|contact| Some(contact.name.clone()));
     reader.names.entry("force").or_default().extend(named);
-    let mut outputs = outputs::read(reader, &page);
+    let (mut outputs, pending) = outputs::read(reader, &page);
     contacts::loads(reader, &mut contacts, &joints, &mut outputs);
     reader.visible = seen::known(reader, &outputs);
     reader.outputs = outputs.iter().map(|output| output.kind.clone()).collect();
+    named_formulas::read(reader, &page);
+    outputs::read_formulas(reader, pending, &mut outputs);
     let mut forces = forces::read(reader, sections);
     forces.extend(contacts.iter().map(Contact::own_force));
     let controllers = controllers::read(reader, &page, &outputs);
@@ -63,6 +65,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         couplers,
         drivers,
         forces,
+        formulas: std::mem::take(&mut reader.formulas),
         outputs,
         controllers,
         events,

@@ -5,7 +5,7 @@ use super::jet::Jet;
 use super::linear::Vector;
 use super::load::Load;
 use crate::field::Field;
-use gyro_model::{ForceKind, JointCoordinate, JointKind, LoadFrame, Number, StopSide};
+use gyro_model::{ForceKind, JointCoordinate, JointKind, LoadFrame, Number, Seen, StopSide};
 
 /// All forces but gravity together.
 #[derive(Clone, Debug)]
@@ -55,6 +55,17 @@ impl<F: Field> Evaluation<'_, F> {
             ForceKind::Motor { on, value } => self.work_along(forces, *on, &self.strength(value)?),
             ForceKind::Link { .. } => self.add_link(forces, kind)?,
             ForceKind::Load { .. } => self.add_load(forces, kind)?,
+            ForceKind::Potential { energy } => {
+                let (energy, slopes) = self.slopes(energy, |seen| matches!(seen, Seen::Coordinate(_)))?;
+                forces.potential = &forces.potential + energy;
+                slopes.iter().for_each(|(on, slope)| self.push_along(forces, *on, &-slope.clone()));
+            }
+            ForceKind::Dissipation { power } => {
+                let (_, slopes) = self.slopes(power, |seen| matches!(seen, Seen::Rate(_)))?;
+                for (on, slope) in slopes {
+                    self.work_along(forces, on, &-(slope * &self.scope.half));
+                }
+            }
         }
         Some(())
     }

@@ -271,6 +271,9 @@ impl<'t, F: Field> Text<'t, '_, F> {
         let parameter = model.parameters.iter().position(|parameter| parameter.name == name);
         let input = model.inputs.iter().position(|input| input.name == name);
         let derived = model.derived_parameters.iter().find(|parameter| parameter.name == name);
+        if let Some((_, formula)) = model.formulas.iter().find(|(known, _)| known == name) {
+            return value(model, self.scope, self.see, &formula.text).map(moving);
+        }
         match (parameter, input, derived) {
             (Some(index), ..) => self.number(&Number::Parameter { index, negated: false }),
             (_, Some(index), _) => self.number(&Number::Input { index, negated: false }),

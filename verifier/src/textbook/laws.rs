@@ -4,7 +4,8 @@ use super::formula;
 use super::jet::Jet;
 use super::{Evaluation, linear::Vector};
 use crate::field::Field;
-use gyro_model::{ForceKind, Number, OutputKind, Seen};
+use gyro_model::{ForceKind, JointCoordinate, Number, OutputKind, Seen};
+use std::cell::RefCell;
 
 impl<F: Field> Evaluation<'_, F> {
     /// A strength; `None` where it is not defined.
@@ -21,14 +22,68 @@ impl<F: Field> Evaluation<'_, F> {
     pub(super) fn strength_along(&self, number: &Number, line: Option<[&Jet<F>; 2]>) -> Option<Jet<F>> {
         let Number::Formula(formula) = number else { return Some(self.scope.number(number)) };
         let see = |seen| match seen {
+            Seen::Length => line.map(|[length, _]| length.clone()),
+            Seen::LengthRate => line.map(|[_, rate]| rate.clone()),
+            Seen::Output { output, number } => self.early(output, number).map(Jet::constant),
+            seen => self.sight(seen),
+        };
+        self.read(&formula.text, &see)
+    }
+
+    /// The value of a formula and its derivatives by those numbers that it is asked of, each of which is independent of
+    /// the others.
+    pub(super) fn slopes(
+        &self,
+        number: &Number,
+        is_meant: impl Fn(Seen) -> bool,
+    ) -> Option<(Jet<F>, Vec<(JointCoordinate, Jet<F>)>)> {
+        let formula = number.formula()?;
+        let value = self.read(&formula.text, &|seen| self.sight(seen))?.frozen();
+        let met = RefCell::new(Vec::new());
+        self.read(&formula.text, &|seen| {
+            if is_meant(seen) && !met.borrow().contains(&seen) {
+                met.borrow_mut().push(seen);
+            }
+            self.sight(seen)
+        })?;
+        let one = |by: Seen| {
+            let see = |seen| {
+                let value = self.sight(seen)?.value;
+                Some(if seen == by { Jet::moving(value, self.scope.one.value.clone()) } else { Jet::constant(value) })
+            };
+            let slope = self.read(&formula.text, &see)?.derivative(&self.scope.zero.value).frozen();
+            match by {
+                Seen::Coordinate(on) | Seen::Rate(on) => Some((on, slope)),
+                _ => None,
+            }
+        };
+        Some((value, met.into_inner().into_iter().map(one).collect::<Option<_>>()?))
+    }
+
+    /// The value of an output that is a formula, and may see any other.
+    pub(super) fn formula_output(&self, text: &str, accelerations: &[F], lambda: &[F]) -> Option<F> {
+        let see = |seen| match seen {
+            Seen::Output { output, number } => {
+                let kind = &self.textbook.model.outputs[output].kind;
+                self.output(kind, accelerations, lambda)?.get(number).cloned().map(Jet::constant)
+            }
+            seen => self.sight(seen),
+        };
+        self.read(text, &see).map(|value| value.value)
+    }
+
+    fn read(&self, text: &str, see: formula::See<'_, F>) -> Option<Jet<F>> {
+        formula::value(self.textbook.model, &self.scope, see, text)
+    }
+
+    /// What can be seen of the state and of time.
+    fn sight(&self, seen: Seen) -> Option<Jet<F>> {
+        match seen {
             Seen::Time => Some(Jet::constant(self.scope.point.t.clone())),
             Seen::Coordinate(on) => self.coordinate(on, &self.still),
             Seen::Rate(on) => Some(self.coordinate_rate(on)),
-            Seen::Output { output, number } => self.early(output, number).map(Jet::constant),
-            Seen::Length => line.map(|[length, _]| length.clone()),
-            Seen::LengthRate => line.map(|[_, rate]| rate.clone()),
-        };
-        formula::value(self.textbook.model, &self.scope, &see, &formula.text)
+            Seen::Output { .. } | Seen::Length | Seen::LengthRate => None,
+        }
     }
 
     /// A number of an output of position or velocity.

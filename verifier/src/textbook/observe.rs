@@ -115,6 +115,9 @@ impl<F: Field> Evaluation<'_, F> {
                 let [force, torque] = self.reaction(*joint, lambda)?;
                 values(force, &torque.0)
             }
+            OutputKind::Formula(formula) => {
+                vec![self.formula_output(&formula.text, accelerations, lambda)?]
+            }
             OutputKind::Driver { driver } => vec![self.load(RowOwner::Driver(*driver), lambda)],
             OutputKind::Coupler { coupler } => vec![self.load(RowOwner::Coupler(*coupler), lambda)],
             OutputKind::Spring { force } | OutputKind::Link { force } => self.elastic(*force)?.to_vec(),
