@@ -115,8 +115,8 @@ fn what_is_not_chosen_has_no_effect() {
     for (condition, is_positive) in
         [(1.0, true), (f64::INFINITY, true), (0.0, false), (-0.0, false), (-5e-324, false)]
     {
-        let (taken, other): (fn(f64, f64) -> f64, fn(f64, f64) -> f64) =
-            if is_positive { (Scalar::when, Scalar::unless) } else { (Scalar::unless, Scalar::when) };
+        let both: [fn(f64, f64) -> f64; 2] = [Scalar::when, Scalar::unless];
+        let [taken, other] = if is_positive { both } else { [both[1], both[0]] };
         for x in [chosen, infinite, none] {
             same(taken(condition, x), x, condition);
             assert_eq!(other(condition, x).to_bits(), 0, "{condition}: {x}");

@@ -7,6 +7,7 @@ use crate::program::Function;
 use crate::range::Range;
 use astro_float_num::BigFloat;
 use gyro_model::Spline;
+use std::cmp::Ordering;
 
 /// Atoms of floating-point numbers.
 #[derive(Clone, Copy, Debug)]
@@ -86,15 +87,13 @@ pub(crate) fn rate_of_call<F: Field>(
     })
 }
 
-/// A choice between numbers that are compared with zero; of what is no number nothing is chosen.
-fn chosen<T: PartialOrd + Default + Copy>(function: Function, condition: T, x: T) -> T {
-    let zero = T::default();
-    let is_positive = condition > zero;
-    match function {
-        _ if !is_positive && !(condition <= zero) => condition,
-        Function::When if is_positive => x,
-        Function::Unless if !is_positive => x,
-        _ => zero,
+/// A number, or zero, by a condition that is compared with zero; nothing is chosen by what is no number.
+fn chosen<T: PartialOrd + Default>(function: Function, condition: T, x: T) -> T {
+    match (function, condition.partial_cmp(&T::default())) {
+        (_, None) => condition,
+        (Function::When, Some(Ordering::Greater)) => x,
+        (Function::Unless, Some(Ordering::Less | Ordering::Equal)) => x,
+        _ => T::default(),
     }
 }
 
