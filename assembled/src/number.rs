@@ -1,5 +1,6 @@
 //! The number type of assembled mechanisms.
 
+use gyro_program::elementary::Function;
 use gyro_sim::{Real, Scalar};
 use nalgebra::RealField;
 
@@ -40,6 +41,34 @@ pub(crate) fn sin_cos<T: Number>(angle: T) -> (T, T) {
 /// The angle of the point `(x, y)`.
 pub(crate) fn atan2<T: Number>(y: T, x: T) -> T {
     <T as Scalar>::atan2(y, x)
+}
+
+/// The value of an elementary function.
+pub(crate) fn call<T: Number>(function: Function, [a, b]: [T; 2]) -> T {
+    match function {
+        Function::Sqrt => Scalar::sqrt(a),
+        Function::Sin => Scalar::sin(a),
+        Function::Cos => Scalar::cos(a),
+        Function::Tanh => Scalar::tanh(a),
+        Function::Atan2 => Scalar::atan2(a, b),
+        Function::Exp => Scalar::exp(a),
+        Function::Ln => Scalar::ln(a),
+        Function::Abs => Scalar::abs(a),
+        Function::Floor => Scalar::floor(a),
+        Function::When => if_positive(a, b, T::zero()),
+        Function::Unless => if_positive(a, T::zero(), b),
+    }
+}
+
+/// The first where this is greater than zero, else the second; neither of what is not a number.
+pub(crate) fn if_positive<T: Number>(margin: T, a: T, b: T) -> T {
+    if margin > T::zero() {
+        a
+    } else if margin <= T::zero() {
+        b
+    } else {
+        margin
+    }
 }
 
 /// A pivot below this many roundings counts as zero, in matrices whose entries are of order one.

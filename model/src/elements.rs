@@ -4,20 +4,54 @@ use std::slice::from_ref;
 
 use crate::{CoordinateUse, Formula, JointCoordinate, Motion, Number, Seen};
 
-/// A gear, a belt, a rack: `second = ratio · first + offset` between two joint coordinates, one row
-/// `second − ratio · first − offset`.
+/// A joint coordinate that follows others: one row, the coordinate less what it is to be.
 #[derive(Clone, Debug)]
 pub struct Coupler {
     /// Name, an identifier.
     pub name: String,
-    /// The driving coordinate.
-    pub first: JointCoordinate,
     /// The coordinate that follows.
     pub second: JointCoordinate,
-    /// Ratio; of the units of the two coordinates.
-    pub ratio: Number,
-    /// Offset, in the unit of the second coordinate.
-    pub offset: Number,
+    /// What it is to be.
+    pub by: Coupling,
+}
+
+/// What a coordinate is to be.
+#[derive(Clone, Debug)]
+pub enum Coupling {
+    /// `ratio · first + offset`: a gear, a belt, a rack.
+    Linear {
+        /// The driving coordinate.
+        first: JointCoordinate,
+        /// Ratio; of the units of the two coordinates.
+        ratio: Number,
+        /// Offset, in the unit of the second coordinate.
+        offset: Number,
+    },
+    /// A formula of other joint coordinates: a cam, a variable gear.
+    Formula(Formula),
+}
+
+impl Coupler {
+    /// Most coordinates of its row.
+    pub const MOST: usize = 8;
+
+    /// All coordinates of its row.
+    pub fn coordinates(&self) -> Vec<JointCoordinate> {
+        let mut all = vec![self.second];
+        match &self.by {
+            Coupling::Linear { first, .. } => all.insert(0, *first),
+            Coupling::Formula(formula) => all.extend(formula.uses().map(|(on, _)| on)),
+        }
+        all
+    }
+
+    /// The driving coordinate with ratio and offset, of a gear.
+    pub fn linear(&self) -> Option<(JointCoordinate, &Number, &Number)> {
+        match &self.by {
+            Coupling::Linear { first, ratio, offset } => Some((*first, ratio, offset)),
+            Coupling::Formula(_) => None,
+        }
+    }
 }
 
 /// A joint coordinate prescribed in time: one row `coordinate − motion(t)`.

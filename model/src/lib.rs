@@ -28,6 +28,7 @@ mod queries;
 mod redundancy;
 mod scalar;
 mod shape;
+mod sight;
 mod spatial;
 mod spline;
 mod tree;
@@ -39,7 +40,7 @@ pub use controller::{Controller, Law};
 pub use coordinate::{CoordinateKind, CoordinateUse, JointCoordinate, Seen};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
-    BodyFrame, Coupler, Driver, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind, StopSide,
+    BodyFrame, Coupler, Coupling, Driver, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind, StopSide,
 };
 pub use event::{Direction, Event};
 pub use joint_kind::JointKind;

@@ -3,7 +3,8 @@
 use num_dual::Dual2_64;
 
 use crate::scalar::{Scalar, product};
-use crate::{Body, Lines, Model, Number, Quaternion, Spline, Vector, unit_vector};
+use crate::sight::Sight;
+use crate::{Body, Formula, Lines, Model, Number, Quaternion, Spline, Vector, unit_vector};
 
 /// A function of time with values in rad or m.
 #[derive(Clone, Debug)]
@@ -27,6 +28,8 @@ pub enum Motion {
     Table(Spline),
     /// Straight lines through the rows of a table.
     Lines(Lines),
+    /// A formula of time.
+    Formula(Formula),
 }
 
 /// A body's whole motion, prescribed: it has no coordinates, its pose is folded into the formulas as a function of
@@ -70,7 +73,7 @@ impl Motion {
     /// The knots of its smooth tables.
     fn add_knots(&self, knots: &mut Vec<f64>) {
         match self {
-            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Lines(_) => {}
+            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Lines(_) | Self::Formula(_) => {}
             Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.add_knots(knots)),
             Self::Table(spline) => knots.extend(&spline.knots),
         }
@@ -91,6 +94,7 @@ impl Motion {
             }
             Self::Table(spline) => spline.at(t),
             Self::Lines(lines) => lines.at(t),
+            Self::Formula(formula) => Sight::new(model, formula).value(|_| D::zero(), t),
         }
     }
 }
@@ -163,7 +167,7 @@ impl Motion {
     /// All straight lines that are part of it.
     pub(crate) fn lines(&self) -> Vec<&Lines> {
         match self {
-            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Table(_) => Vec::new(),
+            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Table(_) | Self::Formula(_) => Vec::new(),
             Self::Sum(parts) | Self::Product(parts) => parts.iter().flat_map(Self::lines).collect(),
             Self::Lines(lines) => vec![lines],
         }
@@ -171,7 +175,7 @@ impl Motion {
 
     pub(crate) fn lines_mut(&mut self) -> Vec<&mut Lines> {
         match self {
-            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Table(_) => Vec::new(),
+            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Table(_) | Self::Formula(_) => Vec::new(),
             Self::Sum(parts) | Self::Product(parts) => parts.iter_mut().flat_map(Self::lines_mut).collect(),
             Self::Lines(lines) => vec![lines],
         }

@@ -1,6 +1,6 @@
 //! All numbers of a model.
 
-use crate::{Formula, Model, Motion, Number, Shape, ShapeKind};
+use crate::{Coupling, Formula, Model, Motion, Number, Shape, ShapeKind};
 
 impl Model {
     /// Every number of the model file that stands in the model, those of the start included.
@@ -27,7 +27,12 @@ impl Model {
             numbers.extend(start.position.iter().flatten().chain(start.rate.iter().flatten()));
             numbers.extend(start.orientation.iter().flatten());
         }
-        self.couplers.iter().for_each(|coupler| numbers.extend([&coupler.ratio, &coupler.offset]));
+        for coupler in &self.couplers {
+            match &coupler.by {
+                Coupling::Linear { first: _, ratio, offset } => numbers.extend([ratio, offset]),
+                Coupling::Formula(formula) => numbers.extend(formula.numbers()),
+            }
+        }
         self.drivers.iter().for_each(|driver| driver.motion.add_numbers(&mut numbers));
         self.forces
             .iter()
@@ -73,6 +78,7 @@ impl Motion {
             Self::Sum(parts) | Self::Product(parts) => {
                 parts.iter().for_each(|part| part.add_numbers(numbers));
             }
+            Self::Formula(formula) => numbers.extend(formula.numbers()),
             Self::Table(_) | Self::Lines(_) => {}
         }
     }

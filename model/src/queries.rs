@@ -2,7 +2,7 @@
 
 use crate::redundancy::analyse_with_start;
 use crate::{
-    BodyMotion, CoordinateKind, CoordinateUse, Formula, JointCoordinate, JointKind, Lines, Model, Motion, Number,
+    BodyMotion, CoordinateKind, Coupler, CoordinateUse, Formula, JointCoordinate, JointKind, Lines, Model, Motion, Number,
     Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start, Support, Tree, to_f64,
 };
 use std::ops::Range;
@@ -58,7 +58,7 @@ impl Model {
     /// - point on line: `f_i·d`, `g_i·d`;
     /// - rod: `½ (d·d / length − length)`.
     ///
-    /// A coupler has `second − ratio · first − offset`, a driver `coordinate − motion(t)`.
+    /// A coupler has its second coordinate less what that is to be, a driver `coordinate − motion(t)`.
     pub fn rows(&self) -> Vec<Row> {
         let all = self.all_rows();
         all.into_iter().filter(|row| !self.dropped().any(|dropped| dropped.row == *row)).collect()
@@ -143,7 +143,7 @@ impl Model {
     pub fn use_of_coordinates(&self, joint: usize) -> CoordinateUse {
         let forces = self.forces.iter().filter_map(|force| force.kind.parts().on);
         let forces = forces.chain(self.uses_of_formulas());
-        let couplers = self.couplers.iter().flat_map(|coupler| [coupler.first, coupler.second]);
+        let couplers = self.couplers.iter().flat_map(Coupler::coordinates);
         let prescribed = couplers.chain(self.drivers.iter().map(|driver| driver.coordinate));
         let stopped = self.contacts.iter().map(|contact| (contact.on, CoordinateUse::Value));
         let forces = forces.chain(stopped);
@@ -185,7 +185,7 @@ impl Model {
         let forces = forces.chain(self.uses_of_formulas());
         used.extend(forces.filter(|(_, of)| *of == CoordinateUse::Value).map(|(on, _)| on));
         used.extend(self.contacts.iter().map(|contact| contact.on));
-        used.extend(self.couplers.iter().flat_map(|c| [c.first, c.second]));
+        used.extend(self.couplers.iter().flat_map(Coupler::coordinates));
         used.extend(self.drivers.iter().map(|d| d.coordinate));
         let screws = self.joints.iter().enumerate().filter(|(_, j)| j.kind == JointKind::Screw);
         used.extend(screws.map(|(joint, _)| JointCoordinate { joint, coordinate: 0 }));

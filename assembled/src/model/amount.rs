@@ -6,10 +6,9 @@ use crate::model::path::Path;
 use crate::model::place::{Moment, Places, vector};
 use crate::model::scene::Scene;
 use crate::model::spot::Spot;
-use crate::number::{Number, number};
+use crate::number::{Number, call, if_positive, number};
 use gyro_model::{ForceKind, Formula, Model, Number as PageNumber, Operation, OutputKind, Seen};
 use gyro_program::elementary::Function;
-use gyro_sim::Scalar;
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -241,31 +240,4 @@ fn value<T: Number>(formula: &Formula, leaf: impl Fn(usize) -> T) -> T {
 fn power<T: Number>(base: T, exponent: i32) -> T {
     let power = (0..exponent.unsigned_abs()).fold(T::one(), |power, _| power * base);
     if exponent < 0 { T::one() / power } else { power }
-}
-
-fn call<T: Number>(function: Function, [a, b]: [T; 2]) -> T {
-    match function {
-        Function::Sqrt => Scalar::sqrt(a),
-        Function::Sin => Scalar::sin(a),
-        Function::Cos => Scalar::cos(a),
-        Function::Tanh => Scalar::tanh(a),
-        Function::Atan2 => Scalar::atan2(a, b),
-        Function::Exp => Scalar::exp(a),
-        Function::Ln => Scalar::ln(a),
-        Function::Abs => Scalar::abs(a),
-        Function::Floor => Scalar::floor(a),
-        Function::When => if_positive(a, b, T::zero()),
-        Function::Unless => if_positive(a, T::zero(), b),
-    }
-}
-
-/// The first where this is greater than zero, else the second; neither of what is not a number.
-fn if_positive<T: Number>(margin: T, a: T, b: T) -> T {
-    if margin > T::zero() {
-        a
-    } else if margin <= T::zero() {
-        b
-    } else {
-        margin
-    }
 }

@@ -4,14 +4,16 @@
 //! not zero by structure, row by row.
 
 use crate::model::course::Course;
-use crate::model::gradient::Gradient;
+use crate::model::gradient::{Gradient, OF_FORMULA, OF_TWO_JOINTS};
 use crate::model::lowered::Lowered;
 use crate::model::motion::{Motion, along_p, along_pi};
 use crate::model::place::Moment;
 use crate::model::primitives::{Pull, Turning};
-use crate::model::rows::{Row, Term};
+use crate::model::measure::Term;
+use crate::model::rows::Row;
 use crate::model::scene::Constrained;
 use crate::model::textbook::{g_matrix, relative_matrix, tilde};
+use crate::model::tracked::Tracked;
 use crate::number::{Number, abs, number};
 use nalgebra::{Matrix3, RowVector3, SMatrix, Vector3};
 
@@ -82,9 +84,13 @@ impl<T: Number> Lowered<T> {
         }
         let mut resting = Pairs { moved: Motion::at_rest, ..Pairs::new(self, at) };
         for (out, row) in out.iter_mut().zip(&self.rows) {
-            if let Row::Measured { terms, course } = row {
-                *out = -self.measured_jet(terms, course.as_ref(), &mut resting)[1];
-            }
+            *out = match row {
+                Row::Constrained { .. } => T::zero(),
+                Row::Measured { terms, course } => {
+                    -self.measured_jet(terms, course.as_ref(), &mut resting)[1]
+                }
+                Row::Followed { second, formula } => -self.followed_jet(second, formula, &mut resting)[1],
+            };
         }
     }
 
@@ -114,6 +120,7 @@ impl<T: Number> Lowered<T> {
                     self.constrained_jet(at.y, &self.scene.constrained[*body], *component)
                 }
                 Row::Measured { terms, course } => self.measured_jet(terms, course.as_ref(), &mut pairs),
+                Row::Followed { second, formula } => self.followed_jet(second, formula, &mut pairs),
             };
             f(index, jet);
         }
@@ -175,8 +182,42 @@ impl<T: Number> Lowered<T> {
                     constrained_pull(*component, &orientation(body)).walk(body.moving_body, sink);
                 }
                 Row::Measured { terms, .. } => self.measured_gradient(terms, &mut pairs, turning, sink),
+                Row::Followed { second, formula } => {
+                    let jets = self.jets(&formula.terms, &mut pairs);
+                    let slopes = formula.slopes(&jets).into_iter();
+                    let followed = formula.terms.iter().zip(slopes);
+                    let followed = followed.map(|(term, slope)| Term { factor: -slope, ..*term });
+                    let terms: Vec<_> = std::iter::once(*second).chain(followed).collect();
+                    self.summed_gradient::<N, OF_FORMULA>(&terms, &mut pairs, turning, sink);
+                }
             }
         }
+    }
+
+    /// The derivatives of what a joint measures with respect to its bodies' positions.
+    fn pulls<const N: usize>(
+        &self,
+        term: &Term<T>,
+        pairs: &mut Pairs<'_, T>,
+        turning: Turning<T, N>,
+    ) -> [(Option<usize>, Pull<T, N>); 2] {
+        let joint = &self.scene.joints[term.joint];
+        let [first, second] = term.measure.pulls(joint, pairs.of(term.joint), turning);
+        [(joint.first.place.moving_body(), first), (joint.second.place.moving_body(), second)]
+    }
+
+    /// What joints measure, with its derivatives in time.
+    fn jets(&self, terms: &[Term<T>], pairs: &mut Pairs<'_, T>) -> Vec<[T; 3]> {
+        let y = pairs.at.y;
+        let one =
+            |term: &Term<T>| term.measure.jet(&self.scene.joints[term.joint], pairs.of(term.joint), y);
+        terms.iter().map(one).collect()
+    }
+
+    fn followed_jet(&self, second: &Term<T>, formula: &Tracked<T>, pairs: &mut Pairs<'_, T>) -> [T; 3] {
+        let wanted = formula.jet(&self.jets(&formula.terms, pairs), pairs.at.t);
+        let jets = self.jets(std::slice::from_ref(second), pairs);
+        [0, 1, 2].map(|k| jets[0][k] - wanted[k])
     }
 
     fn measured_gradient<const N: usize>(
@@ -186,23 +227,28 @@ impl<T: Number> Lowered<T> {
         turning: Turning<T, N>,
         mut sink: impl FnMut(usize, T),
     ) {
-        let mut pulls = |term: &Term<T>| {
-            let joint = &self.scene.joints[term.joint];
-            let [first, second] = term.measure.pulls(joint, pairs.of(term.joint), turning);
-            [(joint.first.place.moving_body(), first), (joint.second.place.moving_body(), second)]
-        };
         if let [term] = terms {
             // One joint's row has nothing to add up; its factor is one, and columns ascend whichever body comes first.
-            let mut pulls = pulls(term);
+            let mut pulls = self.pulls(term, pairs, turning);
             pulls.sort_by_key(|(moving_body, _)| *moving_body);
             pulls.iter().for_each(|(moving_body, pull)| {
                 moving_body.iter().for_each(|moving_body| pull.walk(*moving_body, &mut sink))
             });
             return;
         }
-        let mut gradient = Gradient::<T, N>::new();
+        self.summed_gradient::<N, OF_TWO_JOINTS>(terms, pairs, turning, sink);
+    }
+
+    fn summed_gradient<const N: usize, const BODIES: usize>(
+        &self,
+        terms: &[Term<T>],
+        pairs: &mut Pairs<'_, T>,
+        turning: Turning<T, N>,
+        sink: impl FnMut(usize, T),
+    ) {
+        let mut gradient = Gradient::<T, N, BODIES>::new();
         for term in terms {
-            for (moving_body, pull) in pulls(term) {
+            for (moving_body, pull) in self.pulls(term, pairs, turning) {
                 moving_body
                     .into_iter()
                     .for_each(|moving_body| gradient.add(moving_body, pull.times(term.factor)));

@@ -2,6 +2,7 @@
 
 use crate::model::motion::Motion as Moving;
 use crate::model::textbook::{product, rotation};
+use crate::model::tracked::Tracked;
 use gyro_model::{Model, Motion, Spline};
 use nalgebra::{Vector3, Vector4};
 
@@ -20,6 +21,8 @@ pub(crate) enum Course {
     Table(Spline),
     /// `[t0, x, v, a]` of `x + v (t − t0) + ½ a (t − t0)²`, and the inputs that these are.
     Line([f64; 4], [usize; 4]),
+    /// A formula of time.
+    Formula(Tracked<f64>),
 }
 
 /// A body's whole motion.
@@ -47,6 +50,7 @@ impl Course {
             Motion::Sum(motions) => Self::Sum(all(motions)),
             Motion::Product(motions) => Self::Product(all(motions)),
             Motion::Table(spline) => Self::Table(spline.clone()),
+            Motion::Formula(formula) => Self::Formula(Tracked::of_time(model, formula)),
             Motion::Lines(lines) => {
                 let value = |index: usize| gyro_model::to_f64(&model.inputs[index].value);
                 Self::Line(lines.inputs.map(value), lines.inputs)
@@ -77,6 +81,7 @@ impl Course {
                 [u * v, du * v + u * dv, ddu * v + 2.0 * du * dv + u * ddv]
             }),
             Self::Table(spline) => table(&spline.knots, &spline.pieces, t),
+            Self::Formula(formula) => formula.jet(&[], t),
             Self::Line([from, place, rate, acceleration], _) => {
                 polynomial(&[*place, *rate, 0.5 * acceleration], t - from)
             }
@@ -86,7 +91,7 @@ impl Course {
     /// An input has changed.
     pub(crate) fn set_input(&mut self, index: usize, value: f64) {
         match self {
-            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Table(_) => {}
+            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Table(_) | Self::Formula(_) => {}
             Self::Sum(parts) | Self::Product(parts) => {
                 parts.iter_mut().for_each(|part| part.set_input(index, value));
             }

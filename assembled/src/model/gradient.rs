@@ -3,16 +3,17 @@
 use crate::model::primitives::Pull;
 use crate::number::Number;
 
-/// The most bodies that one row touches: a coupler of two joints has four.
-const MAX_BODIES: usize = 4;
+/// The most bodies that one row touches: a coupler of two joints has four, one by formula more.
+pub(crate) const OF_TWO_JOINTS: usize = 4;
+pub(crate) const OF_FORMULA: usize = 2 * gyro_model::Coupler::MOST;
 
 /// Blocks of `3 + N` columns, (r, p) with N = 4 or (r, π') with N = 3, by ascending moving_body.
 #[derive(Clone, Debug)]
-pub(crate) struct Gradient<T, const N: usize>([Option<(usize, Pull<T, N>)>; MAX_BODIES]);
+pub(crate) struct Gradient<T, const N: usize, const BODIES: usize>([Option<(usize, Pull<T, N>)>; BODIES]);
 
-impl<T: Number, const N: usize> Gradient<T, N> {
+impl<T: Number, const N: usize, const BODIES: usize> Gradient<T, N, BODIES> {
     pub(crate) fn new() -> Self {
-        Self([const { None }; MAX_BODIES])
+        Self([const { None }; BODIES])
     }
 
     /// Adds a derivative with respect to the position of a body.

@@ -30,6 +30,14 @@ pub(crate) enum Measure {
     Angle(Angle),
 }
 
+/// What a joint measures, times a factor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Term<T> {
+    pub(crate) factor: T,
+    pub(crate) joint: usize,
+    pub(crate) measure: Measure,
+}
+
 /// `atan2(S, C)` with dot-1 forms S and C, continued over turns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Angle {

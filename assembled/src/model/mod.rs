@@ -26,4 +26,5 @@ pub(crate) mod rows;
 pub(crate) mod scene;
 pub(crate) mod spot;
 pub(crate) mod textbook;
+pub(crate) mod tracked;
 pub(crate) mod turns;

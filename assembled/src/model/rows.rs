@@ -3,9 +3,10 @@
 use crate::model::course::Course;
 use crate::model::joint::Joint;
 use crate::model::kinds::{Axis, Primitive, primitives};
-use crate::model::measure::{Coordinate, Measure};
+use crate::model::measure::{Coordinate, Measure, Term};
+use crate::model::tracked::Tracked;
 use crate::number::{Number, number};
-use gyro_model::{JointCoordinate, JointKind, Model, RowOwner};
+use gyro_model::{Coupling, JointCoordinate, JointKind, Model, RowOwner};
 
 /// A constraint row.
 #[derive(Clone, Debug)]
@@ -14,14 +15,8 @@ pub(crate) enum Row<T> {
     Constrained { body: usize, component: usize },
     /// `Σ factor · measure − course(t)`.
     Measured { terms: Vec<Term<T>>, course: Option<Course> },
-}
-
-/// What a joint measures, times a factor.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Term<T> {
-    pub(crate) factor: T,
-    pub(crate) joint: usize,
-    pub(crate) measure: Measure,
+    /// What a joint measures less a formula of what others do.
+    Followed { second: Term<T>, formula: Tracked<T> },
 }
 
 impl<T: Number> Row<T> {
@@ -54,10 +49,18 @@ impl<T: Number> Row<T> {
             }
             RowOwner::Coupler(coupler) => {
                 let coupler = &model.couplers[coupler];
-                let ratio = model.value(&coupler.ratio);
-                Self::Measured {
-                    terms: vec![coordinate(1.0, coupler.second), coordinate(-ratio, coupler.first)],
-                    course: Some(Course::constant(model.value(&coupler.offset))),
+                match &coupler.by {
+                    Coupling::Linear { first, ratio, offset } => Self::Measured {
+                        terms: vec![
+                            coordinate(1.0, coupler.second),
+                            coordinate(-model.value(ratio), *first),
+                        ],
+                        course: Some(Course::constant(model.value(offset))),
+                    },
+                    Coupling::Formula(formula) => Self::Followed {
+                        second: coordinate(1.0, coupler.second),
+                        formula: Tracked::new(model, formula, |on| coordinate(1.0, on)),
+                    },
                 }
             }
             RowOwner::Driver(driver) => {

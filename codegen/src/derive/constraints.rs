@@ -3,10 +3,11 @@
 
 use crate::derive::frames::{JointFrames, dot1};
 use crate::derive::joint_coordinate;
+use crate::derive::laws::{self, OfBodies};
 use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::vector::Vec3;
-use gyro_model::{Coupler, JointCoordinate, JointKind, PointAxes, Support};
+use gyro_model::{Coupler, Coupling, JointCoordinate, JointKind, PointAxes, Support};
 
 /// The rows of `Model::rows`, in their order.
 pub fn rows(system: &mut System) -> Vec<ExprId> {
@@ -52,11 +53,20 @@ fn joint_rows(system: &mut System, index: usize) -> Vec<ExprId> {
     rows
 }
 
-/// `second − ratio · first − offset`.
+/// `second − ratio · first − offset`, or the second coordinate less a formula of others.
 fn coupled(system: &mut System, coupler: &Coupler) -> ExprId {
-    let (first, second) =
-        (joint_coordinate::value(system, coupler.first), joint_coordinate::value(system, coupler.second));
-    let [ratio, offset] = [&coupler.ratio, &coupler.offset].map(|number| system.number(number));
+    let second = joint_coordinate::value(system, coupler.second);
+    let (first, ratio, offset) = match &coupler.by {
+        Coupling::Linear { first, ratio, offset } => (*first, ratio, offset),
+        Coupling::Formula(formula) => {
+            let wanted = laws::value(system, formula, |system, seen| {
+                laws::see(system, &OfBodies, None, seen)
+            });
+            return system.graph.sub(second, wanted);
+        }
+    };
+    let first = joint_coordinate::value(system, first);
+    let [ratio, offset] = [ratio, offset].map(|number| system.number(number));
     let driven = system.graph.mul(ratio, first);
     let lag = system.graph.sub(second, driven);
     system.graph.sub(lag, offset)

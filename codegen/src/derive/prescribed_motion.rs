@@ -1,5 +1,6 @@
 //! Motions prescribed in time, as expressions.
 
+use crate::derive::laws::{self, OfBodies};
 use crate::derive::system::{Pose, System};
 use crate::expr::definitions::Definitions;
 use crate::expr::differentiate::{Derivative, Direction};
@@ -45,6 +46,9 @@ impl<'m> System<'m> {
                 self.graph.symbol(Symbol::Table { table, order: 0 })
             }
             Motion::Lines(lines) => self.line(lines),
+            Motion::Formula(formula) => {
+                laws::value(self, formula, |system, seen| laws::see(system, &OfBodies, None, seen))
+            }
         }
     }
 

@@ -2,7 +2,7 @@
 //! nor a multiplier of them is left.
 
 use super::layout::{Layout, Place};
-use super::relation::{Determined, Relation};
+use super::relation::{Determined, Relation, linear};
 use crate::derive::system::System;
 use crate::expr::definitions::{Definitions, Values};
 use crate::expr::differentiate::{Derivative, Direction};
@@ -43,15 +43,17 @@ pub fn determined(
                     is_open(coordinate).then_some(Determined { coordinate, by: Relation::Driver(driver) })
                 }
                 RowOwner::Coupler(coupler) => {
-                    let relation = &model.couplers[coupler];
-                    let is_tree = is_on_tree(relation.first) && is_on_tree(relation.second);
-                    let is_new = root(&found, relation.first) != root(&found, relation.second);
-                    let forward = Determined { coordinate: relation.second, by: Relation::Forward(coupler) };
-                    let backward = Determined { coordinate: relation.first, by: Relation::Backward(coupler) };
-                    match (is_open(relation.second), is_open(relation.first)) {
+                    // A formula is a row that closes loops.
+                    let second = model.couplers[coupler].second;
+                    let (first, ratio, _) = model.couplers[coupler].linear()?;
+                    let is_tree = is_on_tree(first) && is_on_tree(second);
+                    let is_new = root(&found, first) != root(&found, second);
+                    let forward = Determined { coordinate: second, by: Relation::Forward(coupler) };
+                    let backward = Determined { coordinate: first, by: Relation::Backward(coupler) };
+                    match (is_open(second), is_open(first)) {
                         _ if !(is_tree && is_new) => None,
                         (true, _) => Some(forward),
-                        (false, true) if model.value(&relation.ratio) != 0.0 => Some(backward),
+                        (false, true) if model.value(ratio) != 0.0 => Some(backward),
                         _ => None,
                     }
                 }
@@ -90,8 +92,8 @@ pub fn values(system: &mut System, layout: &Layout) -> Values {
             Relation::Forward(coupler) | Relation::Backward(coupler) => {
                 let source = known.by.source(system.model).expect("a coupler has two coordinates");
                 let of_source = place_of(layout, source);
-                let relation = &system.model.couplers[coupler];
-                let [ratio, offset] = [&relation.ratio, &relation.offset].map(|number| system.number(number));
+                let (_, ratio, offset) = linear(system.model, coupler);
+                let [ratio, offset] = [ratio, offset].map(|number| system.number(number));
                 let graph = &mut system.graph;
                 let symbols = symbols(of_source)
                     .map(|symbol| values.get(&symbol).copied().unwrap_or_else(|| graph.symbol(symbol)));

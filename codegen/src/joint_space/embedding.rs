@@ -6,7 +6,7 @@
 
 use super::determined::place_of;
 use super::layout::Layout;
-use super::relation::Relation;
+use super::relation::{Relation, linear};
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
 use crate::expr::graph::{ExprId, Graph};
@@ -54,7 +54,7 @@ impl Embedding {
                 }
                 Relation::Forward(coupler) | Relation::Backward(coupler) => {
                     let source = known.by.source(system.model).expect("a coupler has two coordinates");
-                    let ratio = system.number(&system.model.couplers[coupler].ratio);
+                    let ratio = system.number(linear(system.model, coupler).1);
                     let graph = &mut system.graph;
                     let ratio =
                         if matches!(known.by, Relation::Forward(_)) { ratio } else { graph.recip(ratio) };

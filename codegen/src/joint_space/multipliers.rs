@@ -6,7 +6,7 @@ use super::coordinates::Coordinates;
 use super::determined::place_of;
 use super::layout::LinkCoordinates;
 use super::link_kinematics::LinkKinematics;
-use super::relation::Relation;
+use super::relation::{Relation, linear};
 use crate::derive::Textbook;
 use crate::derive::kinematics::Kinematics;
 use crate::derive::system::System;
@@ -147,7 +147,7 @@ fn beside_joints(
         let place = place_of(layout, known.coordinate).u;
         let ratio = match known.by {
             Relation::Forward(coupler) | Relation::Backward(coupler) => {
-                system.number(&system.model.couplers[coupler].ratio)
+                system.number(linear(system.model, coupler).1)
             }
             Relation::Driver(_) | Relation::Held(_) => Graph::ZERO,
         };

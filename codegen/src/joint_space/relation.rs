@@ -1,6 +1,6 @@
 //! Relations that determine a coordinate.
 
-use gyro_model::{JointCoordinate, Model, RowOwner};
+use gyro_model::{JointCoordinate, Model, Number, RowOwner};
 
 /// A coordinate that others or time determine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,8 +37,13 @@ impl Relation {
     pub fn source(self, model: &Model) -> Option<JointCoordinate> {
         match self {
             Self::Driver(_) | Self::Held(_) => None,
-            Self::Forward(coupler) => Some(model.couplers[coupler].first),
+            Self::Forward(coupler) => Some(linear(model, coupler).0),
             Self::Backward(coupler) => Some(model.couplers[coupler].second),
         }
     }
+}
+
+/// First coordinate, ratio and offset of a coupler that determines a coordinate.
+pub fn linear(model: &Model, coupler: usize) -> (JointCoordinate, &Number, &Number) {
+    model.couplers[coupler].linear().expect("formulas determine nothing by themselves")
 }

@@ -1,7 +1,8 @@
 //! What the model file says of the joints' coordinates at the start: values held, guesses, rates.
 
 use crate::kinematics::exact;
-use crate::{JointCoordinate, JointKind, Model, Quaternion};
+use crate::sight::Sight;
+use crate::{Coupling, JointCoordinate, JointKind, Model, Quaternion};
 
 /// A joint's start before the assembly.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,14 +107,22 @@ fn next_coupled(model: &Model, guesses: &[Guess]) -> Option<(JointCoordinate, f6
     let known = |c: JointCoordinate| guesses[c.joint].source[c.coordinate] != Source::Unknown;
     let at = |c: JointCoordinate| guesses[c.joint].position[c.coordinate];
     let follow = |coupler: &crate::Coupler| {
-        let (ratio, offset) = (model.value(&coupler.ratio), model.value(&coupler.offset));
-        match (known(coupler.first), known(coupler.second)) {
-            (true, false) => Some((coupler.second, ratio * at(coupler.first) + offset)),
-            (false, true) if ratio != 0.0 => Some((coupler.first, (at(coupler.second) - offset) / ratio)),
+        let (first, ratio, offset) = match &coupler.by {
+            Coupling::Linear { first, ratio, offset } => (*first, model.value(ratio), model.value(offset)),
+            Coupling::Formula(formula) => {
+                let is_known = formula.uses().all(|(on, _)| known(on)) && !known(coupler.second);
+                return is_known.then(|| (coupler.second, Sight::new(model, formula).value(at, 0.0)));
+            }
+        };
+        match (known(first), known(coupler.second)) {
+            (true, false) => Some((coupler.second, ratio * at(first) + offset)),
+            (false, true) if ratio != 0.0 => Some((first, (at(coupler.second) - offset) / ratio)),
             _ => None,
         }
     };
-    let unknown = |coupler: &&crate::Coupler| !known(coupler.first);
-    let seed = || model.couplers.iter().find(unknown).map(|coupler| (coupler.first, 0.0));
+    let seed = || {
+        let mut coordinates = model.couplers.iter().flat_map(|coupler| coupler.coordinates());
+        coordinates.find(|on| !known(*on)).map(|on| (on, 0.0))
+    };
     model.couplers.iter().find_map(follow).or_else(seed)
 }

@@ -2,7 +2,7 @@
 
 use super::{
     KIND, Key, ON_COORDINATE, ON_JOINT, POINT, Table, Value, flag, kind, name, number, orientation, plain,
-    reference, table, vector,
+    reference, table, text, vector,
 };
 
 const AXIS: Key = vector("axis", "", "direction of the axis in the body's frame").or(HERE);
@@ -123,16 +123,20 @@ pub static JOINT_END: Table = Table::new(
 /// `[[coupler]]`.
 pub static COUPLER: Table = Table::new(
     "coupler",
-    "Second coordinate = ratio · first coordinate + offset: a gear, a belt, a rack.",
+    "Second coordinate = ratio · first coordinate + offset, a gear, a belt, a rack; or = a formula, a cam.",
     &[
         name("name"),
-        table("first", &COUPLER_END, "the first coordinate, a table of `joint` and `coordinate`").required(),
+        table("first", &COUPLER_END, "the first coordinate, a table of `joint` and `coordinate`")
+            .or("required but with `formula`"),
         table("second", &COUPLER_END, "the second coordinate").required(),
         number("ratio", "", "ratio, of the two units")
             .not_zero("it would couple nothing")
-            .required()
+            .or("required but with `formula`")
             .eg("ratio = ...: second = ratio * first + offset"),
         number("offset", "rad or m", "offset").or("0"),
+        text("formula", "what the second coordinate is to be: a [formula](laws.md) of other joint coordinates")
+            .eg("formula = \"...\", of other joint coordinates, in place of first, ratio and offset")
+            .or("none"),
     ],
 );
 

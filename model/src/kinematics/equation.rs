@@ -82,7 +82,7 @@ impl Kinematics {
             Equation::Rows(RowOwner::Body(body)) => return vec![body],
             Equation::Rows(RowOwner::Joint(joint)) | Equation::Orientation { joint, .. } => vec![joint],
             Equation::Rows(RowOwner::Coupler(k)) => {
-                vec![self.couplers[k].first.joint, self.couplers[k].second.joint]
+                self.couplers[k].coordinates().into_iter().map(|on| on.joint).collect()
             }
             Equation::Rows(RowOwner::Driver(k)) => vec![self.drivers[k].coordinate.joint],
             Equation::Coordinate { of, .. } => vec![of.joint],
@@ -104,7 +104,7 @@ impl Kinematics {
             }
             Equation::Rows(RowOwner::Coupler(k)) => {
                 let coupler = &self.couplers[k];
-                vec![coordinate(coupler.second) - coordinate(coupler.first) * coupler.ratio - coupler.offset]
+                vec![coordinate(coupler.second) - coupler.wanted(coordinate)]
             }
             Equation::Rows(RowOwner::Driver(k)) => {
                 vec![coordinate(self.drivers[k].coordinate) - self.drivers[k].value.re]

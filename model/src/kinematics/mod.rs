@@ -17,7 +17,9 @@ pub(crate) use joint::JointGeometry;
 use nalgebra::{DMatrix, DVector};
 use num_dual::Dual64;
 
-use crate::{CoordinateKind, JointCoordinate, Model, Quaternion, Row, RowOwner, Support};
+use crate::scalar::Scalar;
+use crate::sight::Sight;
+use crate::{CoordinateKind, Coupling, JointCoordinate, Model, Quaternion, Row, RowOwner, Support};
 
 /// Φ, its derivatives and the joints' coordinates of a model at one instant.
 ///
@@ -71,12 +73,17 @@ enum Place {
     Folded(Pose<Dual64>),
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct CouplerNumbers {
-    first: JointCoordinate,
     second: JointCoordinate,
-    ratio: f64,
-    offset: f64,
+    by: Numbers,
+}
+
+/// What a coupler's second coordinate is to be.
+#[derive(Clone, Debug)]
+enum Numbers {
+    Linear { first: JointCoordinate, ratio: f64, offset: f64 },
+    Formula(Sight),
 }
 
 /// A driver's prescribed value with its derivative in time.
@@ -187,8 +194,31 @@ impl Kinematics {
 
 impl CouplerNumbers {
     fn of(model: &Model, coupler: &crate::Coupler) -> Self {
-        let (ratio, offset) = (model.value(&coupler.ratio), model.value(&coupler.offset));
-        Self { first: coupler.first, second: coupler.second, ratio, offset }
+        let by = match &coupler.by {
+            Coupling::Linear { first, ratio, offset } => {
+                Numbers::Linear { first: *first, ratio: model.value(ratio), offset: model.value(offset) }
+            }
+            Coupling::Formula(formula) => Numbers::Formula(Sight::new(model, formula)),
+        };
+        Self { second: coupler.second, by }
+    }
+
+    /// What the second coordinate is to be.
+    fn wanted<D: Scalar>(&self, coordinate: impl Fn(JointCoordinate) -> D) -> D {
+        match &self.by {
+            Numbers::Linear { first, ratio, offset } => coordinate(*first) * *ratio + *offset,
+            Numbers::Formula(formula) => formula.value(coordinate, D::zero()),
+        }
+    }
+
+    /// All coordinates of its row.
+    fn coordinates(&self) -> Vec<JointCoordinate> {
+        let mut all = vec![self.second];
+        match &self.by {
+            Numbers::Linear { first, .. } => all.push(*first),
+            Numbers::Formula(formula) => all.extend(formula.coordinates()),
+        }
+        all
     }
 }
 

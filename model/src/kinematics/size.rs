@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::{Equation, Kinematics};
+use super::{Equation, Kinematics, Numbers};
 use crate::{JointCoordinate, JointKind, RowOwner};
 
 impl Kinematics {
@@ -27,8 +27,13 @@ impl Kinematics {
         match *equation {
             Equation::Rows(RowOwner::Coupler(k)) => {
                 let coupler = &self.couplers[k];
-                let first = coupler.ratio.abs() * coordinate(coupler.first);
-                (0, coordinate(coupler.second) + first + coupler.offset.abs())
+                let wanted = match &coupler.by {
+                    Numbers::Linear { first, ratio, offset } => ratio.abs() * coordinate(*first) + offset.abs(),
+                    Numbers::Formula(_) => {
+                        coupler.wanted(|of: JointCoordinate| near[of.joint][of.coordinate]).abs()
+                    }
+                };
+                (0, coordinate(coupler.second) + wanted)
             }
             Equation::Rows(RowOwner::Driver(k)) => (0, 2.0 * self.drivers[k].value.re.abs()),
             Equation::Rows(RowOwner::Joint(joint)) if self.joints[joint].kind == JointKind::Screw => {

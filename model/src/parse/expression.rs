@@ -99,6 +99,15 @@ impl Term {
         }
     }
 
+    /// The functions that it calls.
+    pub(super) fn calls(&self) -> Vec<&str> {
+        let mut calls: Vec<&str> = self.parts().into_iter().flat_map(Self::calls).collect();
+        if let Kind::Call(name, _) = &self.kind {
+            calls.push(name);
+        }
+        calls
+    }
+
     fn parts(&self) -> Vec<&Self> {
         match &self.kind {
             Kind::Number(_) | Kind::Name(_) => Vec::new(),

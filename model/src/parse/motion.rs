@@ -2,13 +2,13 @@
 
 use toml::de::DeValue;
 
-use super::names;
-use super::numbers::{number, radians, turns};
+use super::formulas::Inputs;
+use super::numbers::{self, number, radians, turns};
 use super::reader::Reader;
 use super::section::{Item, Section, all, found};
-use super::table;
+use super::{expression, laws, names, seen, table};
 use crate::keys::{MOTION, SINUSOID};
-use crate::{Motion, Number};
+use crate::{Motion, Number, Operation, Seen};
 
 /// The forms of a motion; each excludes the others.
 const FORMS: [&str; 5] = ["polynomial", "sinusoid", "sum", "product", "table"];
@@ -31,12 +31,41 @@ pub(super) fn read(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
             item.wrong(reader, words);
             None
         }
+        DeValue::String(text) if moves(reader, text) => in_time(reader, item, text),
         _ => number(reader, item).map(|constant| Motion::Polynomial(vec![constant])),
     };
     if motion.is_none() {
         reader.doubt(item.place);
     }
     motion
+}
+
+/// Whether a text is a formula rather than a number: it names the time, or calls a function.
+fn moves(reader: &Reader<'_>, text: &str) -> bool {
+    let Ok(term) = expression::parse(text) else { return false };
+    let is_time = |name: &&str| *name == "t" && numbers::named(reader, "t").is_none();
+    term.names().iter().any(is_time) || term.calls().iter().any(|name| *name != "sqrt")
+}
+
+/// A formula of time.
+fn in_time(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Motion> {
+    let refuse = |name: &str, seen: Seen| {
+        (seen != Seen::Time).then(|| {
+            let help = "write a formula of t and of parameters; a [[coupler]] follows other coordinates".to_owned();
+            [format!("a motion cannot depend on `{name}`"), "not the time".to_owned(), help]
+        })
+    };
+    let known = seen::known(reader, &[]);
+    match laws::with_names(reader, &known, Inputs::Unknown, &refuse, |named| named.formula(text)) {
+        Ok(formula) => Some(match formula.operations.as_slice() {
+            [Operation::Number(number)] => Motion::Polynomial(vec![number.clone()]),
+            _ => Motion::Formula(formula),
+        }),
+        Err(fault) => {
+            numbers::wrong_within(reader, item, text, fault);
+            None
+        }
+    }
 }
 
 fn form(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {

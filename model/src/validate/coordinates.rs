@@ -8,13 +8,15 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     let mut groups = Groups::default();
     let mut found = Vec::new();
     for (index, coupler) in model.couplers.iter().enumerate() {
-        if !exists(model, coupler.first) || !exists(model, coupler.second) {
+        if !coupler.coordinates().into_iter().all(|on| exists(model, on)) {
             continue;
         }
-        if coupler.first == coupler.second {
-            found.push(with_itself(model, index));
-        } else if !groups.join(coupler.first, coupler.second, index) {
-            found.push(cycle(model, &groups, index));
+        // Formulas may close circles, as loops of joints do.
+        let Some((first, ..)) = coupler.linear() else { continue };
+        if first == coupler.second {
+            found.push(with_itself(model, index, first));
+        } else if !groups.join(first, coupler.second, index) {
+            found.push(cycle(model, &groups, index, first));
         }
     }
     found.extend(contradicting_drivers(model, &mut groups));
@@ -70,21 +72,21 @@ fn shown(model: &Model, coordinate: JointCoordinate) -> String {
     format!("`{}` of joint `{}`", kind.name(), joint.name)
 }
 
-fn with_itself(model: &Model, index: usize) -> Problem {
+fn with_itself(model: &Model, index: usize, first: JointCoordinate) -> Problem {
     let coupler = &model.couplers[index];
     let place = |side| Place { owner: Owner::CouplerEnd(index, side), key: "" };
     Problem::new(
         place(Side::Second),
-        format!("coupler `{}` couples {} with itself", coupler.name, shown(model, coupler.first)),
+        format!("coupler `{}` couples {} with itself", coupler.name, shown(model, first)),
         "the same coordinate as the first",
         "name two different coordinates in `first` and `second`",
     )
     .also(place(Side::First), "the first coordinate")
 }
 
-fn cycle(model: &Model, groups: &Groups, index: usize) -> Problem {
+fn cycle(model: &Model, groups: &Groups, index: usize, first: JointCoordinate) -> Problem {
     let coupler = &model.couplers[index];
-    let path = groups.reached(coupler.first);
+    let path = groups.reached(first);
     let last = path.iter().find(|(c, _)| *c == coupler.second).and_then(|(_, coupler)| *coupler);
     let also = last.map(|other| {
         (Place { owner: Owner::Coupler(other), key: "" }, "couples the second one already".to_owned())
@@ -95,7 +97,7 @@ fn cycle(model: &Model, groups: &Groups, index: usize) -> Problem {
         message: format!("coupler `{}` closes a cycle of couplers", coupler.name),
         label: format!(
             "{} and {} are coupled without it",
-            shown(model, coupler.first),
+            shown(model, first),
             shown(model, coupler.second)
         ),
         help: "remove a coupler of the cycle: with it the coordinates would be coupled twice".to_owned(),

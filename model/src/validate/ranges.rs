@@ -70,7 +70,8 @@ impl<'m> Ranged<'m> {
 
     pub(super) fn of_coupler(index: usize, coupler: &'m Coupler) -> Self {
         let title = format!("coupler `{}`", coupler.name);
-        Self::new((Owner::Coupler(index), title), COUPLER.keys, [("ratio", &coupler.ratio)])
+        let ratio = coupler.linear().map(|(_, ratio, _)| ("ratio", ratio));
+        Self::new((Owner::Coupler(index), title), COUPLER.keys, ratio)
     }
 
     pub(super) fn of_force(index: usize, force: &'m Force) -> Self {

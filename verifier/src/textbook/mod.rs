@@ -123,7 +123,7 @@ impl<'m> Textbook<'m> {
         let bodies = self.model.bodies.iter().enumerate();
         let poses = bodies.map(|(index, body)| match (self.moving_body_of(index), &body.motion) {
             (Some(_), _) => Some(None),
-            (None, Some(motion)) => scope.driven(body, motion, &t).map(Some),
+            (None, Some(_)) => scope.driven(self.model, body, &t).map(Some),
             (None, None) => scope.given(body).map(Some),
         });
         poses.collect()
@@ -160,7 +160,7 @@ fn bodies_of(model: &Model, owner: RowOwner) -> Vec<usize> {
         RowOwner::Joint(joint) => of_joint(joint).to_vec(),
         RowOwner::Coupler(coupler) => {
             let coupler = &model.couplers[coupler];
-            [of_joint(coupler.first.joint), of_joint(coupler.second.joint)].concat()
+            coupler.coordinates().into_iter().flat_map(|on| of_joint(on.joint)).collect()
         }
         RowOwner::Driver(driver) => of_joint(model.drivers[driver].coordinate.joint).to_vec(),
     };

@@ -1,17 +1,18 @@
 //! Motions prescribed in time, and the bodies that follow them.
 
 use super::attitude::compose;
+use super::formula;
 use super::jet::Jet;
 use super::linear::Vector;
 use super::pose::Pose;
 use super::scope::Scope;
 use crate::field::Field;
-use gyro_model::{Body, BodyMotion, Motion};
+use gyro_model::{Body, Model, Motion, Seen};
 
 impl<F: Field> Scope<'_, F> {
-    /// A function of time.
-    pub fn prescribed(&self, motion: &Motion, t: &Jet<F>) -> Jet<F> {
-        match motion {
+    /// A function of time; `None` where a formula is not defined.
+    pub fn prescribed(&self, model: &Model, motion: &Motion, t: &Jet<F>) -> Option<Jet<F>> {
+        Some(match motion {
             Motion::Polynomial(coefficients) => {
                 let mut power = self.one.clone();
                 coefficients.iter().fold(self.zero.clone(), |sum, coefficient| {
@@ -25,10 +26,12 @@ impl<F: Field> Scope<'_, F> {
                 self.number(amplitude) * self.sin(&argument)
             }
             Motion::Sum(parts) => {
-                parts.iter().fold(self.zero.clone(), |sum, part| sum + self.prescribed(part, t))
+                let add = |sum, part| Some(sum + self.prescribed(model, part, t)?);
+                parts.iter().try_fold(self.zero.clone(), add)?
             }
             Motion::Product(parts) => {
-                parts.iter().fold(self.one.clone(), |product, part| product * self.prescribed(part, t))
+                let multiply = |product, part| Some(product * self.prescribed(model, part, t)?);
+                parts.iter().try_fold(self.one.clone(), multiply)?
             }
             Motion::Table(table) => self.spline(table, t),
             Motion::Lines(lines) => {
@@ -37,16 +40,22 @@ impl<F: Field> Scope<'_, F> {
                 let u = t - &from;
                 place + rate * &u + &self.half * &(acceleration * &(&u * &u))
             }
-        }
+            Motion::Formula(formula) => {
+                let see = |seen| (seen == Seen::Time).then(|| t.clone());
+                formula::value(model, self, &see, &formula.text)?
+            }
+        })
     }
 
     /// `r0 + translation(t)` and `A0 R(axis_1, angle_1(t)) R(axis_2, angle_2(t)) ⋯`.
-    pub fn driven(&self, body: &Body, motion: &BodyMotion, t: &Jet<F>) -> Option<Pose<F>> {
-        let translation = Vector(motion.translation.each_ref().map(|x| self.prescribed(x, t)));
+    pub fn driven(&self, model: &Model, body: &Body, t: &Jet<F>) -> Option<Pose<F>> {
+        let motion = body.motion.as_ref()?;
+        let [x, y, z] = motion.translation.each_ref().map(|x| self.prescribed(model, x, t));
+        let translation = Vector([x?, y?, z?]);
         let mut pose = self.given(body)?;
         pose.r = pose.r + translation;
         for (axis, angle) in &motion.rotations {
-            let (axis, angle) = (Vector(self.unit(axis)?), self.prescribed(angle, t));
+            let (axis, angle) = (Vector(self.unit(axis)?), self.prescribed(model, angle, t)?);
             pose.a = pose.a.product(&self.rotation_about(&axis, &angle));
             pose.p = compose(&pose.p, &self.euler_about(&axis, &angle));
         }

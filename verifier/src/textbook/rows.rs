@@ -5,8 +5,9 @@ use super::jet::Jet;
 use super::pose::{Path, Pose};
 use super::sparse::Sparse;
 use super::{Block, Evaluation};
+use super::formula;
 use crate::field::Field;
-use gyro_model::{Coupler, Driver, JointCoordinate, JointKind, RowOwner};
+use gyro_model::{Coupler, Coupling, Driver, JointCoordinate, JointKind, RowOwner, Seen};
 use std::array::from_fn;
 
 impl<F: Field> Evaluation<'_, F> {
@@ -142,17 +143,27 @@ impl<F: Field> Evaluation<'_, F> {
         Some(position.0.into_iter().chain(orientation).collect())
     }
 
-    /// `second − ratio · first − offset`.
+    /// `second − ratio · first − offset`, or the second coordinate less a formula of others.
     fn coupled(&self, coupler: &Coupler, poses: &[Pose<F>]) -> Option<Jet<F>> {
-        let [ratio, offset] = [&coupler.ratio, &coupler.offset].map(|number| self.scope.number(number));
-        let (first, second) =
-            (self.coordinate(coupler.first, poses)?, self.coordinate(coupler.second, poses)?);
-        Some(second - ratio * first - offset)
+        let second = self.coordinate(coupler.second, poses)?;
+        match &coupler.by {
+            Coupling::Linear { first, ratio, offset } => {
+                let [ratio, offset] = [ratio, offset].map(|number| self.scope.number(number));
+                Some(second - ratio * self.coordinate(*first, poses)? - offset)
+            }
+            Coupling::Formula(formula) => {
+                let see = |seen| match seen {
+                    Seen::Coordinate(on) => self.coordinate(on, poses),
+                    _ => None,
+                };
+                Some(second - formula::value(self.textbook.model, &self.scope, &see, &formula.text)?)
+            }
+        }
     }
 
     /// `coordinate − motion(t)`.
     fn driven(&self, driver: &Driver, path: Path, poses: &[Pose<F>]) -> Option<Jet<F>> {
-        let motion = self.scope.prescribed(&driver.motion, &self.time(path));
+        let motion = self.scope.prescribed(self.textbook.model, &driver.motion, &self.time(path))?;
         Some(self.coordinate(driver.coordinate, poses)? - motion)
     }
 
