@@ -90,8 +90,8 @@ pub trait Scalar:
     fn floor(self) -> Self {
         Self::call(Elementary::Floor, [self; 2])
     }
-    /// `x` where this number is greater than zero, 0 where it is at most zero, and NaN where it is NaN. Where `x` is not
-    /// taken it may be infinite or NaN, and its derivative, too.
+    /// `x` where this number is greater than zero, 0 where it is at most zero, and NaN where it is NaN. Where `x` is
+    /// not taken it may be infinite or NaN, and its derivative, too.
     #[inline(always)]
     #[must_use]
     fn when(self, x: Self) -> Self {
@@ -152,7 +152,8 @@ impl Elementary {
     ];
 
     /// The derivatives by the operands, the second one of functions of two, where the function has this value. By what
-    /// a condition chooses it is one or zero, which nothing is to be multiplied by: where it is not chosen it may change infinitely fast.
+    /// a condition chooses it is one or zero, which nothing is to be multiplied by: where it is not chosen it may change
+    /// infinitely fast.
     #[inline(always)]
     pub(crate) fn slopes<T: Scalar>(self, [x, y]: [T; 2], value: T) -> (T, Option<T>) {
         match self {

@@ -6,8 +6,8 @@ use gyro_codegen::tape::{Operation, Place};
 use gyro_codegen::{Effort, Functions, Scheduled};
 use gyro_program::elementary::Function;
 
-/// The mechanism with another function in the place of the hyperbolic tangent. Its second operand, if it has one, is the
-/// first number of the tape.
+/// The mechanism with another function in the place of the hyperbolic tangent. Its second operand, if it has one, is
+/// the first number of the tape.
 fn replaced(scheduled: &Scheduled, function: Function) -> Scheduled {
     let mut replaced = scheduled.clone();
     let operations = replaced.kernels.values_mut().flat_map(|kernel| &mut kernel.tape.outside.operations);
