@@ -142,7 +142,7 @@ impl Page {
     }
 
     /// A body that joints hold or that floats.
-    fn moving(&mut self) -> Option<usize> {
+    pub fn moving(&mut self) -> Option<usize> {
         let moving: Vec<_> = (0..self.bodies.len()).filter(|&body| self.bodies[body].0.moves()).collect();
         (!moving.is_empty()).then(|| self.dice.pick(&moving))
     }
@@ -182,6 +182,11 @@ impl Page {
                     if self.rotors.once_in(2) { place + &orientation } else { place }
                 }
             };
+            match kind {
+                "pose" => self.early.push(format!("o{index}.ry")),
+                "velocity" | "inertial" => self.early.push(format!("o{index}.wz")),
+                _ => {}
+            }
             self.elements += &format!("\n[[output]]\nname = \"o{index}\"\nkind = \"{kind}\"\n{keys}");
         }
     }

@@ -17,6 +17,7 @@ mod bodies;
 mod closing;
 mod dice;
 mod elements;
+mod laws;
 mod linkages;
 mod loops;
 mod page;
@@ -29,15 +30,15 @@ use page::Page;
 pub fn page(seed: u64) -> String {
     let mut page = Page::new(seed);
     page.ways = Some(Dice::new(!seed));
-    text(page)
+    text(page, seed)
 }
 
 /// The same mechanism with all numbers and parameters written plainly.
 pub fn plain_page(seed: u64) -> String {
-    text(Page::new(seed))
+    text(Page::new(seed), seed)
 }
 
-fn text(mut page: Page) -> String {
+fn text(mut page: Page, seed: u64) -> String {
     page.tree();
     let chain = (page.is_closed && page.dice.once_in(2)).then(|| page.chain());
     page.drivers();
@@ -60,6 +61,7 @@ fn text(mut page: Page) -> String {
         page.hold_all();
     }
     page.elastic_outputs();
+    page.laws(seed);
     page.read();
     page.text()
 }

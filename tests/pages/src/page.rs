@@ -91,6 +91,8 @@ pub struct Page {
     /// Springs and links: names and kinds.
     pub elastic: Vec<(String, &'static str)>,
     pub n_couplers: usize,
+    /// Numbers of outputs that formulas may name.
+    pub early: Vec<String>,
     /// Frames with long numbers.
     pub n_rough: usize,
 }
@@ -119,6 +121,7 @@ impl Page {
             n_drivers: 0,
             elastic: Vec::new(),
             n_couplers: 0,
+            early: Vec::new(),
             n_rough: 0,
         }
     }
