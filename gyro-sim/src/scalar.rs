@@ -152,8 +152,8 @@ impl Elementary {
     ];
 
     /// The derivatives by the operands, the second one of functions of two, where the function has this value. By what
-    /// a condition chooses it is one or zero, which nothing is to be multiplied by: where it is not chosen it may change
-    /// infinitely fast.
+    /// a condition chooses it is one or zero, which nothing is to be multiplied by: where it is not chosen it may
+    /// change infinitely fast.
     #[inline(always)]
     pub(crate) fn slopes<T: Scalar>(self, [x, y]: [T; 2], value: T) -> (T, Option<T>) {
         match self {
