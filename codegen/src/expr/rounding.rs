@@ -1,18 +1,16 @@
 //! How far rounding takes expressions from their values: what is compared before a form is taken.
 //!
-//! Each operation is given a random sign times one unit of rounding, and what that makes of the roots is followed to
-//! first order, in several lanes at once. The root of the mean square over the lanes is the error that independent
-//! roundings make, with all correlations: what cancels again downstream does not count. (Monte Carlo arithmetic, of
-//! D. S. Parker (1997), but linearised: no rounding mode is set, and no error is so large that it hides another.)
+//! To first order an error is the sum of what becomes of each operation's rounding. If roundings are independent, of
+//! one unit each, its mean square is the sum of squares of the operations' values times the root's derivatives by them.
+//! One sweep from the root back to its operands gives all of these (S. Linnainmaa, BIT 16 (1976), whose purpose it
+//! was), with all correlations: what cancels again downstream does not count. Nothing is drawn, so an error depends on
+//! the root alone, not on what else has been derived before it.
 
 use crate::expr::by_expr::ByExpr;
-use crate::expr::domains::{POINTS, mix};
+use crate::expr::domains::POINTS;
 use crate::expr::elementary;
 use crate::expr::graph::{ExprId, Graph, Node};
 use gyro_program::elementary::Function;
-
-/// How many samples an error is made of.
-const LANES: usize = 8;
 
 /// Of long functions fewer points are tried: so many operations altogether, and no fewer points than this.
 const LONG: usize = 40_000;
@@ -25,33 +23,21 @@ pub const LIKE: f64 = 10.0;
 #[derive(Clone, Debug)]
 struct Errors(Vec<Vec<f64>>);
 
-/// A value with what rounding makes of it.
-#[derive(Clone, Copy)]
-struct Rounded {
-    value: f64,
-    errors: [f64; LANES],
-}
-
 impl Errors {
     /// Of each form as it is written. An error is at least a rounding of the result.
     fn of(graph: &Graph, forms: &[&[ExprId]]) -> Vec<Self> {
-        // Together: forms have much in common.
-        let order = graph.reachable(&forms.concat());
-        let places: ByExpr<usize> = order.iter().enumerate().map(|(place, &id)| (id, place)).collect();
-        let steps: Vec<_> = order.iter().map(|&id| Step::of(graph, id, &places)).collect();
-        let mut found = vec![Self(Vec::new()); forms.len()];
-        let mut values = Vec::with_capacity(steps.len());
-        for point in 0..n_points(steps.len()) {
-            values.clear();
-            for step in &steps {
-                let next = step.rounded(graph, point, &values);
-                values.push(next);
-            }
-            for (form, errors) in forms.iter().zip(&mut found) {
-                errors.0.push(form.iter().map(|root| values[places[*root]].error()).collect());
+        // Together: forms have much in common, whole roots among it.
+        let roots = forms.concat();
+        let computed = Computed::of(graph, &roots);
+        let mut known = ByExpr::default();
+        for root in roots {
+            if !known.contains(root) {
+                known.insert(root, computed.errors(root));
             }
         }
-        found
+        let at = |form: &[ExprId], point: usize| form.iter().map(|&root| known[root][point]).collect();
+        let of = |form: &&[ExprId]| Self((0..computed.at.len()).map(|point| at(form, point)).collect());
+        forms.iter().map(of).collect()
     }
 
     /// The least of two errors, everywhere.
@@ -104,46 +90,35 @@ pub fn rounds_well(graph: &Graph, form: &[ExprId], other: &[ExprId]) -> bool {
 /// An operation with the places of its operands.
 struct Step<'g> {
     node: &'g Node,
-    operands: [usize; 2],
+    operands: [Option<usize>; 2],
     constant: f64,
-    /// A sign for each lane, if the result is rounded.
-    signs: Option<[f64; LANES]>,
+    /// Whether the result is not rounded.
+    is_exact: bool,
 }
 
 impl<'g> Step<'g> {
     fn of(graph: &'g Graph, id: ExprId, places: &ByExpr<usize>) -> Self {
         let node = graph.node(id);
         let mut operands = node.operands().map(|operand| places[operand]);
-        let first = operands.next().unwrap_or(0);
         let scales = |operand| graph.as_constant(operand).is_some_and(|constant| constant.is_power_of_two());
         let is_exact = match node {
             Node::Constant(constant) => constant.is_double(),
             Node::Symbol(_) | Node::Neg(_) => true,
             Node::Mul(a, b) => scales(*a) || scales(*b),
-            Node::Call(Function::Abs | Function::Floor, _) => true,
+            Node::Call(Function::Abs | Function::Floor | Function::When | Function::Unless, _) => true,
             _ => false,
         };
-        let bits = mix(id.place() as u64);
-        let sign = |lane: usize| if bits >> lane & 1 == 1 { 1.0 } else { -1.0 };
         Self {
             node,
-            operands: [first, operands.next().unwrap_or(0)],
+            operands: [operands.next(), operands.next()],
             constant: if let Node::Constant(constant) = node { constant.to_f64() } else { 0.0 },
-            signs: (!is_exact).then(|| std::array::from_fn(sign)),
+            is_exact,
         }
     }
 
-    fn rounded(&self, graph: &Graph, point: u32, values: &[Rounded]) -> Rounded {
-        let none = Rounded { value: 0.0, errors: [0.0; LANES] };
-        let [a, b] = self.operands.map(|place| values.get(place).unwrap_or(&none));
-        let (x, y) = (a.value, b.value);
-        // What is not taken may be infinite, and its error, too.
-        if let Node::Call(function @ (Function::When | Function::Unless), _) = *self.node {
-            let taken = |of| elementary::value(function, [x, of]);
-            return Rounded { value: taken(y), errors: b.errors.map(taken) };
-        }
-        // The value, and its derivatives by both operands.
-        let (value, [by_a, by_b]) = match self.node {
+    fn evaluated(&self, graph: &Graph, point: u32, before: &[Evaluated]) -> Evaluated {
+        let [x, y] = self.operands.map(|place| place.map_or(0.0, |place| before[place].value));
+        let (value, slopes) = match self.node {
             Node::Constant(_) => (self.constant, [0.0, 0.0]),
             Node::Symbol(symbol) => (graph.domains.value(*symbol, point), [0.0, 0.0]),
             Node::Add(..) => (x + y, [1.0, 1.0]),
@@ -155,20 +130,91 @@ impl<'g> Step<'g> {
                 (value, elementary::slopes_at(*function, [x, y], value))
             }
         };
-        let errors = std::array::from_fn(|lane| {
-            let own = self.signs.map_or(0.0, |signs| signs[lane] * value);
-            by_a * a.errors[lane] + by_b * b.errors[lane] + own
-        });
-        Rounded { value, errors }
+        Evaluated { value, slopes }
     }
 }
 
-impl Rounded {
-    fn error(&self) -> f64 {
-        let square = self.errors.iter().map(|error| error * error).sum::<f64>();
-        #[expect(clippy::cast_precision_loss, reason = "a small number")]
-        let mean = square / LANES as f64;
-        let error = mean.sqrt();
-        if error.is_finite() { error.max(self.value.abs()) } else { f64::INFINITY }
+/// The value of an operation, and its derivatives by both operands.
+#[derive(Clone, Copy)]
+struct Evaluated {
+    value: f64,
+    slopes: [f64; 2],
+}
+
+/// Operations, evaluated at all points.
+struct Computed<'g> {
+    places: ByExpr<usize>,
+    /// Operands first.
+    steps: Vec<Step<'g>>,
+    at: Vec<Vec<Evaluated>>,
+}
+
+impl<'g> Computed<'g> {
+    fn of(graph: &'g Graph, roots: &[ExprId]) -> Self {
+        let order = graph.reachable(roots);
+        let places: ByExpr<usize> = order.iter().enumerate().map(|(place, &id)| (id, place)).collect();
+        let steps: Vec<_> = order.iter().map(|&id| Step::of(graph, id, &places)).collect();
+        let at = |point| {
+            let mut all = Vec::with_capacity(steps.len());
+            for step in &steps {
+                all.push(step.evaluated(graph, point, &all));
+            }
+            all
+        };
+        let at = (0..n_points(steps.len())).map(at).collect();
+        Self { places, steps, at }
+    }
+
+    /// The errors of a root, at all points.
+    fn errors(&self, root: ExprId) -> Vec<f64> {
+        let way = self.way(self.places[root]);
+        let mut slopes = vec![0.0; way[0] + 1];
+        let error = |all: &Vec<Evaluated>| {
+            let error = self.mean_square(&way, all, &mut slopes).sqrt();
+            if error.is_finite() { error.max(all[way[0]].value.abs()) } else { f64::INFINITY }
+        };
+        self.at.iter().map(error).collect()
+    }
+
+    /// A place, then those of all that it depends on, backwards.
+    fn way(&self, from: usize) -> Vec<usize> {
+        let mut is_needed = vec![false; from + 1];
+        is_needed[from] = true;
+        let mut way = Vec::new();
+        for place in (0..=from).rev() {
+            if is_needed[place] {
+                way.push(place);
+                for operand in self.steps[place].operands.into_iter().flatten() {
+                    is_needed[operand] = true;
+                }
+            }
+        }
+        way
+    }
+
+    /// The mean square of the error of the first of these operations; in `slopes` its derivatives by them are made.
+    fn mean_square(&self, way: &[usize], all: &[Evaluated], slopes: &mut [f64]) -> f64 {
+        way.iter().for_each(|&place| slopes[place] = 0.0);
+        slopes[way[0]] = 1.0;
+        let mut square = 0.0;
+        for &place in way {
+            let (step, slope) = (&self.steps[place], slopes[place]);
+            // What is not taken may be infinite.
+            if slope == 0.0 {
+                continue;
+            }
+            if !step.is_exact {
+                square += (slope * all[place].value).powi(2);
+            }
+            for (operand, by_operand) in step.operands.into_iter().zip(all[place].slopes) {
+                if let Some(operand) = operand {
+                    slopes[operand] += slope * by_operand;
+                }
+            }
+        }
+        square
     }
 }
+
+#[cfg(test)]
+mod tests;
