@@ -11,6 +11,7 @@ mod events;
 mod inputs;
 mod interrupted;
 mod kinks;
+mod laws;
 mod loads;
 mod orientation;
 mod plants;

@@ -104,7 +104,7 @@ impl Kinematics {
             }
             Equation::Rows(RowOwner::Coupler(k)) => {
                 let coupler = &self.couplers[k];
-                vec![coordinate(coupler.second) - coupler.wanted(coordinate)]
+                vec![coupler.lag(coordinate)]
             }
             Equation::Rows(RowOwner::Driver(k)) => {
                 vec![coordinate(self.drivers[k].coordinate) - self.drivers[k].value.re]

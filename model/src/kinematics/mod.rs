@@ -203,11 +203,12 @@ impl CouplerNumbers {
         Self { second: coupler.second, by }
     }
 
-    /// What the second coordinate is to be.
-    fn wanted<D: Scalar>(&self, coordinate: impl Fn(JointCoordinate) -> D) -> D {
+    /// The second coordinate less what it is to be.
+    fn lag<D: Scalar>(&self, coordinate: impl Fn(JointCoordinate) -> D) -> D {
+        let second = coordinate(self.second);
         match &self.by {
-            Numbers::Linear { first, ratio, offset } => coordinate(*first) * *ratio + *offset,
-            Numbers::Formula(formula) => formula.value(coordinate, D::zero()),
+            Numbers::Linear { first, ratio, offset } => second - coordinate(*first) * *ratio - *offset,
+            Numbers::Formula(formula) => second - formula.value(coordinate, D::zero()),
         }
     }
 

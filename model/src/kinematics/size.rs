@@ -29,8 +29,8 @@ impl Kinematics {
                 let coupler = &self.couplers[k];
                 let wanted = match &coupler.by {
                     Numbers::Linear { first, ratio, offset } => ratio.abs() * coordinate(*first) + offset.abs(),
-                    Numbers::Formula(_) => {
-                        coupler.wanted(|of: JointCoordinate| near[of.joint][of.coordinate]).abs()
+                    Numbers::Formula(formula) => {
+                        formula.value(|of: JointCoordinate| near[of.joint][of.coordinate], 0.0).abs()
                     }
                 };
                 (0, coordinate(coupler.second) + wanted)

@@ -33,7 +33,7 @@ pub(super) fn couplers(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Coupl
 fn by_formula(reader: &mut Reader<'_>, section: &Section<'_>, second: JointCoordinate) -> Coupling {
     for key in ["first", "ratio", "offset"] {
         let message = format!("{} has a `formula` and `{key}`", section.title);
-        section.refuse(reader, key, &message, &format!("write `{key}` into the formula, or remove it"));
+        section.refuse(reader, key, &message, "remove it: the formula says all of it");
     }
     let item = section.find(reader, "formula");
     let text = item.and_then(|item| Some((item, item.text(reader)?)));

@@ -20,6 +20,8 @@ pub(super) struct Named<'m> {
     pub(super) numbers: &'m [&'m str],
     /// Whether inputs may stand here.
     pub(super) inputs: Inputs,
+    /// Inputs that may not.
+    pub(super) refused_inputs: &'m [String],
     /// Formulas that have a name.
     pub(super) formulas: &'m [(String, Formula)],
     /// What may not stand here: message, label and help.
@@ -138,11 +140,19 @@ impl Build<'_, '_> {
             (None, None, Some((_, formula))) => self.spliced(term, name, formula),
             (None, None, None) if name == "t" => self.seen(term, name, Seen::Time),
             (None, None, None) if name == "pi" => Ok(self.exact(pi())),
+            (None, None, None) if named.refused_inputs.iter().any(|input| input == name) => {
+                let words = [
+                    format!("`{name}` is an input"),
+                    "may not stand here".to_owned(),
+                    "write a formula without inputs".to_owned(),
+                ];
+                Err(Fault { span: term.span.clone(), words })
+            }
             (None, None, None) => {
                 let columns = named.columns.iter().map(|(name, _)| name.as_str());
                 let formulas = named.formulas.iter().map(|(name, _)| name.as_str());
                 let known: Vec<&str> = columns.chain(formulas).chain(named.numbers.iter().copied()).collect();
-                let message = format!("`{name}` names no column of a run's table and no parameter");
+                let message = format!("`{name}` names nothing that moves and no parameter");
                 Err(fault(term, &message, &names::instead(name, &known)))
             }
         }
@@ -378,8 +388,16 @@ pub(crate) fn formula_of(model: &Model, text: &str) -> Result<Formula, String> {
     let numbers: Vec<&str> = model.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
     let columns = &model.visible();
     let formulas = &model.formulas;
-    let inputs = Inputs::Unknown;
-    let named = Named { columns, number: &number, numbers: &numbers, inputs, formulas, refuse: &any };
+    let inputs: Vec<String> = model.inputs.iter().map(|input| input.name.clone()).collect();
+    let named = Named {
+        columns,
+        number: &number,
+        numbers: &numbers,
+        inputs: Inputs::Unknown,
+        refused_inputs: &inputs,
+        formulas,
+        refuse: &any,
+    };
     named.varying(text).map_err(|Fault { words: [message, _, help], .. }| format!("{message}; {help}"))
 }
 

@@ -49,7 +49,8 @@ pub(super) fn call(
     let Some((_, takes)) = ALL.iter().find(|(known, _)| *known == name) else {
         let known: Vec<&str> = ALL.iter().map(|(name, _)| *name).collect();
         let help = if name == "log" { "write ln(...) or log10(...)".to_owned() } else { names::instead(name, &known) };
-        return Err(fault(term, &format!("there is no function `{name}`"), &help));
+        let Fault { span, words } = fault(term, &format!("there is no function `{name}`"), &help);
+        return Err(Fault { span: span.start..span.start + name.len(), words });
     };
     let length = takes.split(", ").count();
     if operands.len() != length {

@@ -108,7 +108,10 @@ pub(super) fn with_names<T>(
     refuse: &dyn Fn(&str, Seen) -> Option<[String; 3]>,
     read: impl FnOnce(&Named<'_>) -> Result<T, Fault>,
 ) -> Result<T, Fault> {
-    let known: &[String] = if inputs == Inputs::Known { &reader.inputs } else { &[] };
+    let (known, refused): (&[String], &[String]) = match inputs {
+        Inputs::Known => (&reader.inputs, &[]),
+        Inputs::Unknown => (&[], &reader.inputs),
+    };
     let input = |name: &str| {
         let index = known.iter().position(|input| input == name);
         index.map(|index| Number::Input { index, negated: false })
@@ -117,5 +120,13 @@ pub(super) fn with_names<T>(
     let derived = reader.derived.iter().map(|(name, _)| name);
     let numbers: Vec<&str> =
         reader.parameters.iter().chain(derived).chain(known).map(String::as_str).collect();
-    read(&Named { columns, number: &number, numbers: &numbers, inputs, formulas: &reader.formulas, refuse })
+    read(&Named {
+        columns,
+        number: &number,
+        numbers: &numbers,
+        inputs,
+        refused_inputs: refused,
+        formulas: &reader.formulas,
+        refuse,
+    })
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_3;
 
 use gyro_model::{
-    AssemblyError, Coupler, Driver, JointCoordinate, JointKind, Kinematics, Model, Motion, Move, Number,
+    AssemblyError, Coupler, Coupling, Driver, JointCoordinate, JointKind, Kinematics, Model, Motion, Move, Number,
     Rational, RowOwner, Start, read,
 };
 
@@ -342,10 +342,8 @@ fn gear(name: &str, first: usize, second: usize, ratio: f64, offset: f64) -> Cou
     let of = |joint| JointCoordinate { joint, coordinate: 0 };
     Coupler {
         name: name.to_owned(),
-        first: of(first),
         second: of(second),
-        ratio: number(ratio),
-        offset: number(offset),
+        by: Coupling::Linear { first: of(first), ratio: number(ratio), offset: number(offset) },
     }
 }
 

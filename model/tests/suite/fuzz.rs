@@ -239,7 +239,7 @@ fn check_references(model: &Model) {
             OutputKind::Driver { driver } => assert!(driver < model.drivers.len()),
             OutputKind::Coupler { coupler } => assert!(coupler < model.couplers.len()),
             OutputKind::Spring { force } | OutputKind::Link { force } => assert!(force < model.forces.len()),
-            OutputKind::Energy | OutputKind::Power => {}
+            OutputKind::Formula(_) | OutputKind::Energy | OutputKind::Power => {}
         }
     }
     for force in &model.forces {
@@ -247,8 +247,11 @@ fn check_references(model: &Model) {
             ForceKind::Link { first, second, .. } => assert!(first.0.max(second.0) < model.bodies.len()),
             ForceKind::Load { body, .. } => assert!(*body < model.bodies.len()),
             kind => {
-                let (on, _) = kind.parts().on.expect("it acts along a coordinate");
-                assert!(on.coordinate < model.joints[on.joint].kind.coordinates().len());
+                let slopes = kind.slopes().into_iter().flat_map(|(_, along)| along);
+                let on = kind.parts().on.into_iter().map(|(on, _)| on).chain(slopes.map(|(on, _)| on));
+                let mut all = on.peekable();
+                assert!(all.peek().is_some(), "it acts along a coordinate");
+                all.for_each(|on| assert!(on.coordinate < model.joints[on.joint].kind.coordinates().len()));
             }
         }
     }

@@ -9,6 +9,7 @@ mod closing_kinds;
 mod cures;
 mod elements;
 mod format_page;
+mod formulas;
 mod fuzz;
 mod guesses;
 mod kinematics;

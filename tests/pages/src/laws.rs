@@ -33,7 +33,7 @@ const OF_ONE: [&str; 22] = [
     "(1 + (X)^2)^1.5",
     "(1 + (X)^2)^-0.3",
     "step(X, -0.5, 0, 0.8, 1)",
-    "-X deg",
+    "-(X) deg",
 ];
 
 /// The same with two.

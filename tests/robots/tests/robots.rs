@@ -189,8 +189,10 @@ fn armatures<M: JointSpace<Scalar = f64>>(model: &Model, mechanism: &M) -> DMatr
         at += place.n_rates();
     }
     for coupler in &model.couplers {
-        let Number::Exact(ratio) = &coupler.ratio else { panic!("a ratio that is no parameter") };
-        turning[coupler.second.joint] = &turning[coupler.first.joint] * to_f64(ratio);
+        let Some((first, Number::Exact(ratio), _)) = coupler.linear() else {
+            panic!("a ratio that is no parameter")
+        };
+        turning[coupler.second.joint] = &turning[first.joint] * to_f64(ratio);
     }
     let joints = model.joints.iter().zip(&turning);
     joints.fold(DMatrix::zeros(n, n), |sum, (joint, turning)| {

@@ -1,0 +1,215 @@
+//! Formulas as laws, couplings and motions, against the same equations typed and integrated here.
+
+use crate::support::{Folder, json, simulate};
+use serde_json::Value;
+use std::fs;
+
+/// A rotor about the vertical, with an inertia of 0.5 kg·m².
+const ROTOR: &str = "format = 1\nname = \"rotor\"\n[parameters]\nk = 3\n[inputs]\nu = 0.7\n[[body]]\nname = \"ground\"\n\
+    fixed = true\n[[body]]\nname = \"wheel\"\nmass = 1\ninertia = [1, 1, 0.5]\n[[joint]]\nname = \"turn\"\n\
+    kind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\nfirst = { body = \"ground\" }\n\
+    second = { body = \"wheel\" }\nangle = 0.4\nrate = 1.5\n";
+
+/// A slider of 2 kg along x without weight, of a body that is 0.3 m above the rail.
+const SLIDER: &str = "format = 1\nname = \"slider\"\n[[body]]\nname = \"ground\"\nfixed = true\n[[body]]\nname = \"cart\"\n\
+    mass = 2\ninertia = [1, 1, 1]\n[[joint]]\nname = \"rail\"\nkind = \"prismatic\"\naxis = [1, 0, 0]\nzero = [0, 1, 0]\n\
+    first = { body = \"ground\" }\nsecond = { body = \"cart\" }\ndisplacement = 0.5\nrate = -0.2\n";
+
+const RUNS: [&[&str]; 4] = [
+    &["--integrator", "dop853", "--tolerance", "1e-12"],
+    &["--coordinates", "maximal", "--integrator", "dop853", "--tolerance", "1e-12"],
+    &["--integrator", "tsit5", "--tolerance", "1e-11"],
+    &["--engine", "assembled", "--integrator", "dop853", "--tolerance", "1e-12"],
+];
+
+type Law = fn(f64, f64, f64) -> f64;
+
+/// By Kutta's method in steps of 1e-5 s.
+fn integrated(mut y: [f64; 2], t_end: f64, acceleration: impl Fn(f64, f64, f64) -> f64) -> [f64; 2] {
+    let n = (t_end / 1e-5).round() as u32;
+    let h = t_end / f64::from(n);
+    for step in 0..n {
+        let t = f64::from(step) * h;
+        let slope = |part: f64, k: [f64; 2]| {
+            let [x, v] = [0, 1].map(|i: usize| y[i] + part * h * k[i]);
+            [v, acceleration(x, v, t + part * h)]
+        };
+        let a = slope(0.0, [0.0; 2]);
+        let b = slope(0.5, a);
+        let c = slope(0.5, b);
+        let d = slope(1.0, c);
+        y = [0, 1].map(|k: usize| y[k] + h / 6.0 * (a[k] + 2.0 * b[k] + 2.0 * c[k] + d[k]));
+    }
+    y
+}
+
+fn run(page: &str, options: &[&str], t_end: &str) -> Value {
+    let folder = Folder::new("laws");
+    fs::write(folder.0.join("page.toml"), page).unwrap();
+    json(&folder, &[&["page.toml", "--t-end", t_end], options].concat())
+}
+
+/// Position and rate of the first joint, and the drift of the energy.
+fn end(run: &Value) -> [f64; 3] {
+    let joints = run["joints"].as_object().unwrap();
+    let joint = joints.get("turn").or_else(|| joints.get("rail")).unwrap();
+    let number = |value: &Value| value.as_f64().unwrap();
+    [number(&joint["position"]), number(&joint["rate"]), number(&run["energy_drift"])]
+}
+
+#[test]
+fn motors_by_formula_move_as_their_equation_does() {
+    let laws: [(&str, Law); 8] = [
+        ("-k*turn^3 - 0.2*turn rate*abs(turn rate) + 0.5*sin(3*t) - 0.1*u", |x, v, t| {
+            -3.0 * x.powi(3) - 0.2 * v * v.abs() + 0.5 * (3.0 * t).sin() - 0.07
+        }),
+        ("exp(-turn^2)*cos(4*t) - ln(2 + turn^2)*turn", |x, _, t| {
+            (-x * x).exp() * (4.0 * t).cos() - (2.0 + x * x).ln() * x
+        }),
+        ("-2*(turn^2 + 0.1)^0.3*turn + step(t, 0.1, 0, 0.6, 1)", |x, _, t| {
+            let s = ((t - 0.1) / 0.5).clamp(0.0, 1.0);
+            -2.0 * (x * x + 0.1).powf(0.3) * x + s * s * (3.0 - 2.0 * s)
+        }),
+        ("-atan2(turn rate, 1 + turn^2) + tanh(turn)", |x, v, _| -v.atan2(1.0 + x * x) + x.tanh()),
+        ("-asin(0.5*sin(turn)) - sinh(0.3*turn) + hypot(turn, turn rate)", |x, v, _| {
+            -(0.5 * x.sin()).asin() - (0.3 * x).sinh() + x.hypot(v)
+        }),
+        ("-ramp(turn - 0.6, 0.01)*200", |x, _, _| -100.0 * (x - 0.6 + (x - 0.6).hypot(0.01))),
+        ("if(turn > 0.6, -100*(turn - 0.6)^1.5, 0)", |x, _, _| {
+            if x > 0.6 { -100.0 * (x - 0.6).powf(1.5) } else { 0.0 }
+        }),
+        ("min(turn, 0.5) + max(turn rate, 1.2)*0", |x, _, _| x.min(0.5)),
+    ];
+    for (text, law) in laws {
+        let expected = integrated([0.4, 1.5], 0.8, |x, v, t| law(x, v, t) / 0.5);
+        let force = "[[force]]\nname = \"law\"\nkind = \"motor\"\njoint = \"turn\"\n";
+        for options in RUNS {
+            let [x, v, drift] = end(&run(&format!("{ROTOR}{force}value = {text:?}\n"), options, "0.8"));
+            let near = |found: f64, expected: f64| (found - expected).abs() < 2e-9;
+            assert!(near(x, expected[0]) && near(v, expected[1]), "{text} {options:?}: {x} {v} {expected:?}");
+            assert!(drift.abs() < 1e-8, "{text} {options:?}: {drift}");
+        }
+    }
+}
+
+#[test]
+fn potentials_and_dissipations_act_by_their_slopes() {
+    let page = format!(
+        "{ROTOR}[[force]]\nname = \"well\"\nkind = \"potential\"\nenergy = \"2*(1 - cos(turn)) + turn^4 + if(turn > 0.5, \
+         k*(turn - 0.5)^3, 0)\"\n[[force]]\nname = \"loss\"\nkind = \"dissipation\"\npower = \"0.3*turn rate^2*(1 + \
+         turn^2)\"\n"
+    );
+    let expected = integrated([0.4, 1.5], 0.8, |x, v, _| {
+        let above = (x - 0.5).max(0.0);
+        (-2.0 * x.sin() - 4.0 * x.powi(3) - 9.0 * above * above - 0.3 * v * (1.0 + x * x)) / 0.5
+    });
+    for options in RUNS {
+        let run = run(&page, options, "0.8");
+        let [x, v, drift] = end(&run);
+        assert!((x - expected[0]).abs() < 2e-9 && (v - expected[1]).abs() < 2e-9, "{options:?}: {x} {v} {expected:?}");
+        // The energy is stored, and what is lost is counted as work.
+        assert!(drift.abs() < 1e-8, "{options:?}: {drift}");
+    }
+}
+
+#[test]
+fn wires_pull_and_do_not_push() {
+    let page = format!(
+        "{SLIDER}[[force]]\nname = \"wire\"\nkind = \"link\"\nfirst = {{ body = \"ground\", point = [0, 0.3, 0] }}\n\
+         second = {{ body = \"cart\" }}\ntension = \"if(length > 0.45, 50*(length - 0.45) + 3*length rate, 0)\"\n"
+    );
+    let expected = integrated([0.5, -0.2], 1.2, |x, v, _| {
+        let length = x.hypot(0.3);
+        let tension = if length > 0.45 { 50.0 * (length - 0.45) + 3.0 * x * v / length } else { 0.0 };
+        -tension * x / length / 2.0
+    });
+    for options in RUNS {
+        let [x, v, _] = end(&run(&page, options, "1.2"));
+        // The force jumps where the wire goes slack while it is being wound up.
+        assert!((x - expected[0]).abs() < 1e-5 && (v - expected[1]).abs() < 1e-5, "{options:?}: {x} {v} {expected:?}");
+    }
+}
+
+/// A shaft with a cam that lifts a follower on a spring: `(I + m f'²) θ̈ + m f' f'' θ̇² + k f f' = 0`.
+#[test]
+fn cams_lift_by_their_formula() {
+    let page = format!(
+        "{ROTOR}[[body]]\nname = \"follower\"\nmass = 0.4\ninertia = [1, 1, 1]\n[[joint]]\nname = \"lift\"\n\
+         kind = \"prismatic\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\nfirst = {{ body = \"ground\" }}\n\
+         second = {{ body = \"follower\" }}\n[[force]]\nname = \"spring\"\nkind = \"spring\"\njoint = \"lift\"\n\
+         stiffness = 20\n[[coupler]]\nname = \"cam\"\nsecond = {{ joint = \"lift\" }}\n\
+         formula = \"0.3*(1 - cos(turn)) + 0.1*sin(turn)^2\"\n"
+    );
+    let expected = integrated([0.4, 1.5], 0.8, |x, v, _| {
+        let lift = 0.3 * (1.0 - x.cos()) + 0.1 * x.sin().powi(2);
+        let slope = 0.3 * x.sin() + 0.1 * (2.0 * x).sin();
+        let bend = 0.3 * x.cos() + 0.2 * (2.0 * x).cos();
+        -(0.4 * slope * bend * v * v + 20.0 * lift * slope) / (0.5 + 0.4 * slope * slope)
+    });
+    for options in RUNS {
+        let [x, v, drift] = end(&run(&page, options, "0.8"));
+        assert!((x - expected[0]).abs() < 2e-9 && (v - expected[1]).abs() < 2e-9, "{options:?}: {x} {v} {expected:?}");
+        assert!(drift.abs() < 1e-8, "{options:?}: {drift}");
+    }
+}
+
+#[test]
+fn motions_by_formula_are_what_they_say() {
+    let page = format!(
+        "{}[[driver]]\nname = \"shaker\"\njoint = \"turn\"\nmotion = \"0.1*sin(12*t)*tanh(t) + k*exp(-t)\"\n\
+         [[output]]\nname = \"torque\"\nkind = \"driver\"\ndriver = \"shaker\"\n",
+        ROTOR.replace("angle = 0.4\nrate = 1.5\n", "")
+    );
+    let t: f64 = 0.8;
+    let place = |t: f64| 0.1 * (12.0 * t).sin() * t.tanh() + 3.0 * (-t).exp();
+    // θ̈ by hand.
+    let (s, c, h) = ((12.0 * t).sin(), (12.0 * t).cos(), t.tanh());
+    let g = 1.0 - h * h;
+    let second = 0.1 * (-144.0 * s * h + 24.0 * c * g - 2.0 * s * h * g) + 3.0 * (-t).exp();
+    for options in RUNS {
+        let run = run(&page, options, "0.8");
+        let [x, ..] = end(&run);
+        assert!((x - place(t)).abs() < 1e-12, "{options:?}: {x}");
+        let torque = run["outputs"]["torque"].as_f64().unwrap();
+        assert!((torque - 0.5 * second).abs() < 1e-9, "{options:?}: {torque}");
+    }
+}
+
+/// Of a spring, a damper and a motor the formula takes the operations of the kind that is built in.
+#[test]
+fn formulas_cost_what_kinds_do() {
+    let folder = Folder::new("costs");
+    let row = |name: &str, force: &str| {
+        let page = format!("{ROTOR}[[force]]\nname = \"law\"\n{force}\n");
+        fs::write(folder.0.join(format!("{name}.toml")), page).unwrap();
+        let (file, out) = (format!("{name}.toml"), format!("{name}.rs"));
+        let output = crate::support::xtask(&folder, &["generate", &file, "--out", &out]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = fs::read_to_string(folder.0.join(out)).unwrap();
+        let rows = text.lines().filter(|line| {
+            ["| joint_accelerations |", "| joint_derivative |", "| corrected_accelerations |"]
+                .iter()
+                .any(|row| line.contains(row))
+        });
+        rows.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let spring = row("spring", "kind = \"spring\"\njoint = \"turn\"\nstiffness = \"k\"\nfree = 0.2");
+    let potential = row("potential", "kind = \"potential\"\nenergy = \"0.5*k*(turn - 0.2)^2\"");
+    assert!(!spring.is_empty());
+    assert_eq!(spring, potential);
+    let damper = row("damper", "kind = \"damper\"\njoint = \"turn\"\ndamping = \"k\"");
+    assert_eq!(damper, row("motor", "kind = \"motor\"\njoint = \"turn\"\nvalue = \"-k*turn rate\""));
+    assert_eq!(damper, row("loss", "kind = \"dissipation\"\npower = \"k*turn rate^2\""));
+}
+
+#[test]
+fn what_has_no_value_ends_a_run() {
+    let folder = Folder::new("domain");
+    let force = "[[force]]\nname = \"law\"\nkind = \"motor\"\njoint = \"turn\"\nvalue = \"sqrt(0.6 - turn)\"\n";
+    fs::write(folder.0.join("page.toml"), format!("{ROTOR}{force}")).unwrap();
+    for options in RUNS {
+        let output = simulate(&folder, &[&["page.toml", "--t-end", "0.8"], options].concat());
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success() && said.contains("t ="), "{options:?}: {said}");
+    }
+}
