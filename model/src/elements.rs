@@ -241,7 +241,9 @@ impl ForceKind {
     /// Of a potential or a dissipation its formula, and the coordinates along which it acts, each as the formula sees
     /// it: the coordinate itself, or its rate.
     pub fn slopes(&self) -> Option<(&Formula, Vec<(JointCoordinate, Seen)>)> {
-        let (Self::Potential { energy: number } | Self::Dissipation { power: number }) = self else { return None };
+        let (Self::Potential { energy: number } | Self::Dissipation { power: number }) = self else {
+            return None;
+        };
         let formula = number.formula()?;
         let is_rate = matches!(self, Self::Dissipation { .. });
         let along = formula.sees().filter_map(|seen| match seen {

@@ -40,7 +40,8 @@ pub use controller::{Controller, Law};
 pub use coordinate::{CoordinateKind, CoordinateUse, JointCoordinate, Seen};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
-    BodyFrame, Coupler, Coupling, Driver, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind, StopSide,
+    BodyFrame, Coupler, Coupling, Driver, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind,
+    StopSide,
 };
 pub use event::{Direction, Event};
 pub use joint_kind::JointKind;
@@ -48,7 +49,7 @@ pub use kinematics::Kinematics;
 pub use lines::Lines;
 pub use motion::{BodyMotion, Motion, Prescribed};
 pub use number::{Computation, Formula, Number, Operation, Rational, parse_decimal, to_f64};
-pub use parse::{column, is_keyword, meant, pi, read, read_with};
+pub use parse::{column, is_keyword, meant, pi, read, read_with, root};
 pub use redundancy::{Analysis, analyse};
 pub use shape::{Shape, ShapeKind};
 pub use spatial::{Quaternion, Vector, unit_vector};

@@ -34,13 +34,10 @@ impl Model {
             }
         }
         self.drivers.iter().for_each(|driver| driver.motion.add_numbers(&mut numbers));
-        self.forces
-            .iter()
-            .flat_map(|force| force.kind.parts().numbers)
-            .for_each(|(_, of)| {
-                numbers.extend(of);
-                numbers.extend(of.iter().filter_map(Number::formula).flat_map(Formula::numbers));
-            });
+        self.forces.iter().flat_map(|force| force.kind.parts().numbers).for_each(|(_, of)| {
+            numbers.extend(of);
+            numbers.extend(of.iter().filter_map(Number::formula).flat_map(Formula::numbers));
+        });
         for frame in self.outputs.iter().filter_map(|output| output.kind.frame()) {
             numbers.extend(frame.point.iter().chain(frame.orientation.iter().flatten()));
         }

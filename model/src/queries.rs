@@ -2,8 +2,9 @@
 
 use crate::redundancy::analyse_with_start;
 use crate::{
-    BodyMotion, CoordinateKind, Coupler, CoordinateUse, Formula, JointCoordinate, JointKind, Lines, Model, Motion, Number,
-    Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start, Support, Tree, to_f64,
+    BodyMotion, CoordinateKind, CoordinateUse, Coupler, Formula, JointCoordinate, JointKind, Lines, Model,
+    Motion, Number, Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start, Support,
+    Tree, to_f64,
 };
 use std::ops::Range;
 

@@ -59,9 +59,27 @@ fn call<D: Scalar>(function: Function, [a, b]: [D; 2]) -> D {
         Function::Atan2 => a.atan2(b),
         Function::Exp => a.exp(),
         Function::Ln => a.ln(),
-        Function::Abs => if a.re() < 0.0 { -a } else { a },
+        Function::Abs => {
+            if a.re() < 0.0 {
+                -a
+            } else {
+                a
+            }
+        }
         Function::Floor => D::from(a.re().floor()),
-        Function::When => if a.re() > 0.0 { b } else { zero },
-        Function::Unless => if a.re() > 0.0 { zero } else { b },
+        Function::When => {
+            if a.re() > 0.0 {
+                b
+            } else {
+                zero
+            }
+        }
+        Function::Unless => {
+            if a.re() > 0.0 {
+                zero
+            } else {
+                b
+            }
+        }
     }
 }

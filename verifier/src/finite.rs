@@ -189,6 +189,10 @@ impl Dense {
             return false;
         }
         let point: Point<f64> = states::point(model, (), state, 0.0, |x| x);
+        // A formula may be anything, |x| and √x included.
+        if !Textbook::new(model).at(&point, &Elementary).is_some_and(|here| here.has_smooth_formulas()) {
+            return false;
+        }
         let entries = self.entries.iter().map(|&(.., id)| id);
         let reach = self.formulas.reach(entries.chain(self.others.iter().copied()));
         let read = |source| *point.given(source).expect("the textbook reads what the model says there is");

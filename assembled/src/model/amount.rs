@@ -153,7 +153,9 @@ impl<T: Number> Leaf<T> {
             Self::Input(index, sign) => scene.inputs[*index].1 * *sign,
             Self::Time => at.t,
             Self::Coordinate(path) => path.value(scene, at),
-            Self::Rate(path) => path.grip(scene, &path.places(scene).map(|place| scene.motion(at, place))).rate,
+            Self::Rate(path) => {
+                path.grip(scene, &path.places(scene).map(|place| scene.motion(at, place))).rate
+            }
             Self::Pose(spot, number) => spot.pose(&scene.motion(at, &spot.place))[*number],
             Self::Velocity(spot, number) => spot.velocity(&scene.motion(at, &spot.place))[*number],
             Self::Length => now.line[0],
@@ -191,7 +193,9 @@ impl<T: Number> Amount<T> {
                     let factor = number::<T>(f64::from(*exponent)) * power(a, exponent - 1);
                     (power(a, *exponent), factor * da)
                 }
-                Operation::Call(function, operands) => call_with_slope(*function, operands.map(|a| values[a])),
+                Operation::Call(function, operands) => {
+                    call_with_slope(*function, operands.map(|a| values[a]))
+                }
             })
         });
         let Ok((_, slope)) = pair;

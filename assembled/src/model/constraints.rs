@@ -6,10 +6,10 @@
 use crate::model::course::Course;
 use crate::model::gradient::{Gradient, OF_FORMULA, OF_TWO_JOINTS};
 use crate::model::lowered::Lowered;
+use crate::model::measure::Term;
 use crate::model::motion::{Motion, along_p, along_pi};
 use crate::model::place::Moment;
 use crate::model::primitives::{Pull, Turning};
-use crate::model::measure::Term;
 use crate::model::rows::Row;
 use crate::model::scene::Constrained;
 use crate::model::textbook::{g_matrix, relative_matrix, tilde};
@@ -209,8 +209,7 @@ impl<T: Number> Lowered<T> {
     /// What joints measure, with its derivatives in time.
     fn jets(&self, terms: &[Term<T>], pairs: &mut Pairs<'_, T>) -> Vec<[T; 3]> {
         let y = pairs.at.y;
-        let one =
-            |term: &Term<T>| term.measure.jet(&self.scene.joints[term.joint], pairs.of(term.joint), y);
+        let one = |term: &Term<T>| term.measure.jet(&self.scene.joints[term.joint], pairs.of(term.joint), y);
         terms.iter().map(one).collect()
     }
 

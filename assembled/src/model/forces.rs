@@ -1,7 +1,7 @@
 //! Applied forces, paper, eqs. (21) and (22): gravity, damping in the joints, and the forces of the model file.
 
-use crate::model::joint::Joint;
 use crate::model::amount::{Amount, Now};
+use crate::model::joint::Joint;
 use crate::model::law::Law;
 use crate::model::measure::Coordinate;
 use crate::model::motion::Motion;

@@ -38,7 +38,8 @@ impl<T: Number> Law<T> {
                 Self::Coulomb { level: amount(level), rate: amount(rate) }
             }
             ForceKind::Stop { on: _, limit, side, stiffness, damping, softness } => {
-                let [limit, stiffness, damping, softness] = [limit, stiffness, damping, softness].map(&amount);
+                let [limit, stiffness, damping, softness] =
+                    [limit, stiffness, damping, softness].map(&amount);
                 Self::Stop { limit, side: *side, stiffness, damping, softness }
             }
             ForceKind::Motor { on: _, value } => Self::Motor { value: amount(value) },

@@ -1,7 +1,7 @@
 //! What a model file asks for besides the motion: [`gyro_model::OutputKind`].
 
-use crate::model::joint::Joint;
 use crate::model::amount::Amount;
+use crate::model::joint::Joint;
 use crate::model::measure::Coordinate;
 use crate::model::path::Path;
 use crate::model::place::{Places, vector};

@@ -51,10 +51,7 @@ impl<T: Number> Row<T> {
                 let coupler = &model.couplers[coupler];
                 match &coupler.by {
                     Coupling::Linear { first, ratio, offset } => Self::Measured {
-                        terms: vec![
-                            coordinate(1.0, coupler.second),
-                            coordinate(-model.value(ratio), *first),
-                        ],
+                        terms: vec![coordinate(1.0, coupler.second), coordinate(-model.value(ratio), *first)],
                         course: Some(Course::constant(model.value(offset))),
                     },
                     Coupling::Formula(formula) => Self::Followed {

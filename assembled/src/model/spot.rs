@@ -18,8 +18,7 @@ pub(crate) struct Spot<T> {
 
 impl<T: Number> Spot<T> {
     pub(crate) fn new(model: &Model, places: &Places<T>, frame: &BodyFrame) -> Self {
-        let [e0, e1, e2, e3] =
-            frame.orientation.as_ref().map_or([1.0, 0.0, 0.0, 0.0], |p| model.values(p));
+        let [e0, e1, e2, e3] = frame.orientation.as_ref().map_or([1.0, 0.0, 0.0, 0.0], |p| model.values(p));
         Self {
             place: places.of(frame.body),
             point: vector(model.values(&frame.point)),

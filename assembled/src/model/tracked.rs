@@ -21,11 +21,7 @@ pub(crate) struct Tracked<T> {
 type Jet<T> = [T; 3];
 
 impl<T: Number> Tracked<T> {
-    pub(crate) fn new(
-        model: &Model,
-        formula: &Formula,
-        term: impl Fn(JointCoordinate) -> Term<T>,
-    ) -> Self {
+    pub(crate) fn new(model: &Model, formula: &Formula, term: impl Fn(JointCoordinate) -> Term<T>) -> Self {
         let value = |operation: &Operation| match operation {
             Operation::Number(value) => number(model.value(value)),
             _ => T::zero(),

@@ -106,13 +106,15 @@ fn unit(v: [f64; 3], otherwise: [f64; 3]) -> [f64; 3] {
 
 fn links(model: &Model) -> Vec<gyro_show::Link> {
     let link = |force: &gyro_model::Force| match &force.kind {
-        ForceKind::Link { first, second, stiffness, damping, free_length, tension: _ } => Some(gyro_show::Link {
-            name: force.name.clone(),
-            ends: [first, second].map(|(body, point)| (*body, model.values(point))),
-            stiffness: model.value(stiffness),
-            damping: model.value(damping),
-            free_length: model.value(free_length),
-        }),
+        ForceKind::Link { first, second, stiffness, damping, free_length, tension: _ } => {
+            Some(gyro_show::Link {
+                name: force.name.clone(),
+                ends: [first, second].map(|(body, point)| (*body, model.values(point))),
+                stiffness: model.value(stiffness),
+                damping: model.value(damping),
+                free_length: model.value(free_length),
+            })
+        }
         _ => None,
     };
     model.forces.iter().filter_map(link).collect()

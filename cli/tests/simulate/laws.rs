@@ -2,7 +2,10 @@
 
 use crate::support::{Folder, json, simulate};
 use serde_json::Value;
+use std::array::from_fn;
 use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A rotor about the vertical, with an inertia of 0.5 kg·m².
 const ROTOR: &str = "format = 1\nname = \"rotor\"\n[parameters]\nk = 3\n[inputs]\nu = 0.7\n[[body]]\nname = \"ground\"\n\
@@ -24,27 +27,38 @@ const RUNS: [&[&str]; 4] = [
 
 type Law = fn(f64, f64, f64) -> f64;
 
-/// By Kutta's method in steps of 1e-5 s.
-fn integrated(mut y: [f64; 2], t_end: f64, acceleration: impl Fn(f64, f64, f64) -> f64) -> [f64; 2] {
+/// By Kutta's method in steps of 1e-5 s, of positions with their rates.
+fn integrated<const N: usize>(
+    mut y: [[f64; N]; 2],
+    t_end: f64,
+    acceleration: impl Fn([f64; N], [f64; N], f64) -> [f64; N],
+) -> [[f64; N]; 2] {
     let n = (t_end / 1e-5).round() as u32;
     let h = t_end / f64::from(n);
     for step in 0..n {
         let t = f64::from(step) * h;
-        let slope = |part: f64, k: [f64; 2]| {
-            let [x, v] = [0, 1].map(|i: usize| y[i] + part * h * k[i]);
+        let slope = |part: f64, k: [[f64; N]; 2]| {
+            let [x, v] = [0, 1].map(|i: usize| from_fn(|j| y[i][j] + part * h * k[i][j]));
             [v, acceleration(x, v, t + part * h)]
         };
-        let a = slope(0.0, [0.0; 2]);
+        let a = slope(0.0, [[0.0; N]; 2]);
         let b = slope(0.5, a);
         let c = slope(0.5, b);
         let d = slope(1.0, c);
-        y = [0, 1].map(|k: usize| y[k] + h / 6.0 * (a[k] + 2.0 * b[k] + 2.0 * c[k] + d[k]));
+        y = from_fn(|i| from_fn(|j| y[i][j] + h / 6.0 * (a[i][j] + 2.0 * b[i][j] + 2.0 * c[i][j] + d[i][j])));
     }
     y
 }
 
+/// The same of one coordinate.
+fn integrated_one(y: [f64; 2], t_end: f64, acceleration: impl Fn(f64, f64, f64) -> f64) -> [f64; 2] {
+    let [x, v] = integrated(y.map(|y| [y]), t_end, |[x], [v], t| [acceleration(x, v, t)]);
+    [x[0], v[0]]
+}
+
 fn run(page: &str, options: &[&str], t_end: &str) -> Value {
-    let folder = Folder::new("laws");
+    static RUNS: AtomicUsize = AtomicUsize::new(0);
+    let folder = Folder::new(&format!("laws-{}", RUNS.fetch_add(1, Ordering::Relaxed)));
     fs::write(folder.0.join("page.toml"), page).unwrap();
     json(&folder, &[&["page.toml", "--t-end", t_end], options].concat())
 }
@@ -81,7 +95,7 @@ fn motors_by_formula_move_as_their_equation_does() {
         ("min(turn, 0.5) + max(turn rate, 1.2)*0", |x, _, _| x.min(0.5)),
     ];
     for (text, law) in laws {
-        let expected = integrated([0.4, 1.5], 0.8, |x, v, t| law(x, v, t) / 0.5);
+        let expected = integrated_one([0.4, 1.5], 0.8, |x, v, t| law(x, v, t) / 0.5);
         let force = "[[force]]\nname = \"law\"\nkind = \"motor\"\njoint = \"turn\"\n";
         for options in RUNS {
             let [x, v, drift] = end(&run(&format!("{ROTOR}{force}value = {text:?}\n"), options, "0.8"));
@@ -99,14 +113,17 @@ fn potentials_and_dissipations_act_by_their_slopes() {
          k*(turn - 0.5)^3, 0)\"\n[[force]]\nname = \"loss\"\nkind = \"dissipation\"\npower = \"0.3*turn rate^2*(1 + \
          turn^2)\"\n"
     );
-    let expected = integrated([0.4, 1.5], 0.8, |x, v, _| {
+    let expected = integrated_one([0.4, 1.5], 0.8, |x, v, _| {
         let above = (x - 0.5).max(0.0);
         (-2.0 * x.sin() - 4.0 * x.powi(3) - 9.0 * above * above - 0.3 * v * (1.0 + x * x)) / 0.5
     });
     for options in RUNS {
         let run = run(&page, options, "0.8");
         let [x, v, drift] = end(&run);
-        assert!((x - expected[0]).abs() < 2e-9 && (v - expected[1]).abs() < 2e-9, "{options:?}: {x} {v} {expected:?}");
+        assert!(
+            (x - expected[0]).abs() < 2e-9 && (v - expected[1]).abs() < 2e-9,
+            "{options:?}: {x} {v} {expected:?}"
+        );
         // The energy is stored, and what is lost is counted as work.
         assert!(drift.abs() < 1e-8, "{options:?}: {drift}");
     }
@@ -118,7 +135,7 @@ fn wires_pull_and_do_not_push() {
         "{SLIDER}[[force]]\nname = \"wire\"\nkind = \"link\"\nfirst = {{ body = \"ground\", point = [0, 0.3, 0] }}\n\
          second = {{ body = \"cart\" }}\ntension = \"if(length > 0.45, 50*(length - 0.45) + 3*length rate, 0)\"\n"
     );
-    let expected = integrated([0.5, -0.2], 1.2, |x, v, _| {
+    let expected = integrated_one([0.5, -0.2], 1.2, |x, v, _| {
         let length = x.hypot(0.3);
         let tension = if length > 0.45 { 50.0 * (length - 0.45) + 3.0 * x * v / length } else { 0.0 };
         -tension * x / length / 2.0
@@ -126,7 +143,10 @@ fn wires_pull_and_do_not_push() {
     for options in RUNS {
         let [x, v, _] = end(&run(&page, options, "1.2"));
         // The force jumps where the wire goes slack while it is being wound up.
-        assert!((x - expected[0]).abs() < 1e-5 && (v - expected[1]).abs() < 1e-5, "{options:?}: {x} {v} {expected:?}");
+        assert!(
+            (x - expected[0]).abs() < 1e-5 && (v - expected[1]).abs() < 1e-5,
+            "{options:?}: {x} {v} {expected:?}"
+        );
     }
 }
 
@@ -140,7 +160,7 @@ fn cams_lift_by_their_formula() {
          stiffness = 20\n[[coupler]]\nname = \"cam\"\nsecond = {{ joint = \"lift\" }}\n\
          formula = \"0.3*(1 - cos(turn)) + 0.1*sin(turn)^2\"\n"
     );
-    let expected = integrated([0.4, 1.5], 0.8, |x, v, _| {
+    let expected = integrated_one([0.4, 1.5], 0.8, |x, v, _| {
         let lift = 0.3 * (1.0 - x.cos()) + 0.1 * x.sin().powi(2);
         let slope = 0.3 * x.sin() + 0.1 * (2.0 * x).sin();
         let bend = 0.3 * x.cos() + 0.2 * (2.0 * x).cos();
@@ -148,7 +168,10 @@ fn cams_lift_by_their_formula() {
     });
     for options in RUNS {
         let [x, v, drift] = end(&run(&page, options, "0.8"));
-        assert!((x - expected[0]).abs() < 2e-9 && (v - expected[1]).abs() < 2e-9, "{options:?}: {x} {v} {expected:?}");
+        assert!(
+            (x - expected[0]).abs() < 2e-9 && (v - expected[1]).abs() < 2e-9,
+            "{options:?}: {x} {v} {expected:?}"
+        );
         assert!(drift.abs() < 1e-8, "{options:?}: {drift}");
     }
 }
@@ -205,11 +228,106 @@ fn formulas_cost_what_kinds_do() {
 #[test]
 fn what_has_no_value_ends_a_run() {
     let folder = Folder::new("domain");
-    let force = "[[force]]\nname = \"law\"\nkind = \"motor\"\njoint = \"turn\"\nvalue = \"sqrt(0.6 - turn)\"\n";
+    let force =
+        "[[force]]\nname = \"law\"\nkind = \"motor\"\njoint = \"turn\"\nvalue = \"sqrt(0.6 - turn)\"\n";
     fs::write(folder.0.join("page.toml"), format!("{ROTOR}{force}")).unwrap();
     for options in RUNS {
         let output = simulate(&folder, &[&["page.toml", "--t-end", "0.8"], options].concat());
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(!output.status.success() && said.contains("t ="), "{options:?}: {said}");
     }
+}
+
+/// A run of one of the examples, to 1e-12.
+fn example(name: &str, t_end: &str) -> Value {
+    let folder = Folder::new(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/laws").join(format!("{name}.toml"));
+    let page = path.display().to_string();
+    json(&folder, &[&page, "--t-end", t_end, "--integrator", "dop853", "--tolerance", "1e-12"])
+}
+
+fn joint(run: &Value, name: &str) -> [f64; 2] {
+    ["position", "rate"].map(|key| run["joints"][name][key].as_f64().unwrap())
+}
+
+fn near(found: [f64; 2], expected: [f64; 2], tolerance: f64) {
+    let is_near = |k: usize| (found[k] - expected[k]).abs() < tolerance * expected[k].abs().max(1.0);
+    assert!(is_near(0) && is_near(1), "{found:?} for {expected:?}");
+}
+
+/// From y0 at x0 to y1 at x1.
+fn step(x: f64, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) -> f64 {
+    let s = ((x - x0) / (x1 - x0)).clamp(0.0, 1.0);
+    y0 + (y1 - y0) * s * s * (3.0 - 2.0 * s)
+}
+
+#[test]
+fn the_duffing_pendulum_moves_as_its_equation_does() {
+    let expected = integrated_one([0.0, 0.0], 5.0, |x, v, t| {
+        (-9.81 * 0.2 * x.sin() - 0.4 * x - 2.5 * x.powi(3) - 0.02 * v + 0.8 * (4.0 * t).sin()) / 0.09
+    });
+    near(joint(&example("duffing", "5"), "swing"), expected, 1e-9);
+}
+
+#[test]
+fn the_cam_pushes_as_its_profile_asks() {
+    let run = example("cam_follower", "0.3");
+    let x: f64 = 25.0 * 0.3;
+    let lift = 0.02 * (1.0 - x.cos()) + 0.004 * x.sin().powi(2);
+    let second = 625.0 * (0.02 * x.cos() + 0.008 * (2.0 * x).cos());
+    let push = 0.4 * (second + 9.81) + 300.0 * (lift + 0.05);
+    near([joint(&run, "lift")[0], run["outputs"]["push"].as_f64().unwrap()], [lift, push], 1e-9);
+}
+
+#[test]
+fn the_load_of_the_crane_swings_on_its_wire() {
+    let out = |t: f64| 4.0 - step(t, [1.0, 0.0], [4.0, 1.5]);
+    let trolley = |t: f64| step(t, [0.5, 0.0], [3.0, 2.0]);
+    let rate = |t: f64| (trolley(t + 1e-6) - trolley(t - 1e-6)) / 2e-6;
+    let [[x, y], _] = integrated([[0.0, -4.02], [0.0; 2]], 4.0, |[x, y], [vx, vy], t| {
+        let (dx, dv) = (x - trolley(t), vx - rate(t));
+        let length = dx.hypot(y);
+        let pull = 25e3 * (length - out(t)) + 600.0 * (dx * dv + y * vy) / length;
+        let pull = if length > out(t) { pull } else { 0.0 };
+        [-pull * dx / length / 50.0, -pull * y / length / 50.0 - 9.81]
+    });
+    let run = example("crane", "4");
+    let at = &run["outputs"]["at"];
+    near([at[0].as_f64().unwrap(), at[1].as_f64().unwrap()], [x, y], 1e-6);
+}
+
+#[test]
+fn the_quarter_car_drives_over_its_bump() {
+    let expected = integrated([[0.0; 2]; 2], 0.9, |[u, travel], [_, rate], t| {
+        let place = 8.0 * t;
+        let road = 0.05 * (step(place, [4.0, 0.0], [4.5, 1.0]) - step(place, [5.0, 0.0], [5.5, 1.0]));
+        let damper = if rate > 0.0 { -2500.0 * rate } else { -1100.0 * rate };
+        let strut = damper - 18e3 * travel - 4e5 * travel.powi(3);
+        let tyre = if u < road { 2e5 * (road - u) } else { 0.0 };
+        let wheel = (tyre - strut) / 40.0 - 9.81;
+        [wheel, strut / 300.0 - 9.81 - wheel]
+    });
+    let run = example("quarter_car", "0.9");
+    for (k, name) in ["u", "travel"].into_iter().enumerate() {
+        near(joint(&run, name), [expected[0][k], expected[1][k]], 1e-6);
+    }
+}
+
+/// After a period it is where it began: 2π √(a³ / μ).
+#[test]
+fn the_satellite_comes_back() {
+    let run = example("satellite", "8145.599631159027");
+    let at = &run["outputs"]["at"];
+    near([at[0].as_f64().unwrap(), at[1].as_f64().unwrap() / 7e6], [7e6, 0.0], 1e-8);
+    let half = example("satellite", "4072.7998155795136");
+    near([half["outputs"]["distance"].as_f64().unwrap(), 0.0], [10.5e6, 0.0], 1e-8);
+}
+
+/// Upwards against the square of its velocity: `v = √(f/b) tanh(t √(f b) / m)` for a thrust f beyond the weight.
+#[test]
+fn the_quadrotor_rises() {
+    let (force, resistance, mass, t) = (4.0 * 1.1e-5 * 560.0_f64.powi(2) - 1.2 * 9.81, 0.12_f64, 1.2, 2.0);
+    let velocity = (force / resistance).sqrt() * (t * (force * resistance).sqrt() / mass).tanh();
+    let run = example("quadrotor", "2");
+    near([run["outputs"]["air"][2].as_f64().unwrap(), 0.0], [velocity, 0.0], 1e-7);
 }

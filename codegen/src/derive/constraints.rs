@@ -59,9 +59,8 @@ fn coupled(system: &mut System, coupler: &Coupler) -> ExprId {
     let (first, ratio, offset) = match &coupler.by {
         Coupling::Linear { first, ratio, offset } => (*first, ratio, offset),
         Coupling::Formula(formula) => {
-            let wanted = laws::value(system, formula, |system, seen| {
-                laws::see(system, &OfBodies, None, seen)
-            });
+            let wanted =
+                laws::value(system, formula, |system, seen| laws::see(system, &OfBodies, None, seen));
             return system.graph.sub(second, wanted);
         }
     };

@@ -137,7 +137,13 @@ pub fn with_slope(
         let graph = &mut system.graph;
         let slope = match operation {
             Operation::Number(_) => Graph::ZERO,
-            Operation::Seen(seen) => if *seen == by { Graph::ONE } else { Graph::ZERO },
+            Operation::Seen(seen) => {
+                if *seen == by {
+                    Graph::ONE
+                } else {
+                    Graph::ZERO
+                }
+            }
             Operation::Negative(a) => graph.neg(slope_of(*a)),
             Operation::Sum(a, b) => graph.add(slope_of(*a), slope_of(*b)),
             Operation::Difference(a, b) => graph.sub(slope_of(*a), slope_of(*b)),

@@ -1,8 +1,8 @@
 //! The whole file, how it is run, and motions.
 
 use super::{
-    BODY, CONTACT, CONTROLLER, COUPLER, DRIVER, EVENT, FORCE, FORMULA, JOINT, Key, OUTPUT, Table, Value, flag, name,
-    number, plain, table, tables, text, vector, word,
+    BODY, CONTACT, CONTROLLER, COUPLER, DRIVER, EVENT, FORCE, FORMULA, JOINT, Key, OUTPUT, Table, Value,
+    flag, name, number, plain, table, tables, text, vector, word,
 };
 
 /// The whole model file.
@@ -42,7 +42,10 @@ pub static FILE: Table = Table::new(
         tables(&JOINT, "one `[[joint]]` a joint"),
         tables(&COUPLER, "one `[[coupler]]` a gear, belt or other coupling of two joint coordinates"),
         tables(&DRIVER, "one `[[driver]]` a joint coordinate that is prescribed in time"),
-        tables(&FORCE, "one `[[force]]` a spring, damper, friction, stop, motor, link, load, potential or dissipation"),
+        tables(
+            &FORCE,
+            "one `[[force]]` a spring, damper, friction, stop, motor, link, load, potential or dissipation",
+        ),
         tables(&FORMULA, "one `[[formula]]` a formula that has a name"),
         tables(&OUTPUT, "one `[[output]]` a thing that is computed besides the motion"),
         tables(&CONTROLLER, "one `[[controller]]` a sampled controller, which runs close a loop with"),

@@ -134,9 +134,12 @@ pub static COUPLER: Table = Table::new(
             .or("required but with `formula`")
             .eg("ratio = ...: second = ratio * first + offset"),
         number("offset", "rad or m", "offset").or("0"),
-        text("formula", "what the second coordinate is to be: a [formula](laws.md) of other joint coordinates")
-            .eg("formula = \"...\", of other joint coordinates, in place of first, ratio and offset")
-            .or("none"),
+        text(
+            "formula",
+            "what the second coordinate is to be: a [formula](laws.md) of other joint coordinates",
+        )
+        .eg("formula = \"...\", of other joint coordinates, in place of first, ratio and offset")
+        .or("none"),
     ],
 );
 

@@ -49,7 +49,11 @@ pub static OUTPUT: Table = Table::new(
     ),
     kind("spring", "torque or force of the spring (N·m or N), and its deflection (rad or m)", FORCE),
     kind("link", "force with which the link pushes its ends apart (N), and its length (m)", FORCE),
-    kind("formula", "the value of a formula, see [laws](laws.md)", &[text("of", "the formula").required().eg("of = \"...\"")]),
+    kind(
+        "formula",
+        "the value of a formula, see [laws](laws.md)",
+        &[text("of", "the formula").required().eg("of = \"...\"")],
+    ),
     kind("energy", "kinetic and potential energy (J)", &[]),
     kind("power", "power of all non-conservative forces, and of drivers and driven bodies (W)", &[]),
 ]);

@@ -28,7 +28,9 @@ impl Kinematics {
             Equation::Rows(RowOwner::Coupler(k)) => {
                 let coupler = &self.couplers[k];
                 let wanted = match &coupler.by {
-                    Numbers::Linear { first, ratio, offset } => ratio.abs() * coordinate(*first) + offset.abs(),
+                    Numbers::Linear { first, ratio, offset } => {
+                        ratio.abs() * coordinate(*first) + offset.abs()
+                    }
                     Numbers::Formula(formula) => {
                         formula.value(|of: JointCoordinate| near[of.joint][of.coordinate], 0.0).abs()
                     }

@@ -135,7 +135,8 @@ impl Meaning<'_> {
 fn whole_exponent(exponent: &Term) -> Result<i32, Fault> {
     let wrong = |message: &str, help: String| fault(exponent, message.to_owned(), "this exponent", help);
     let Some(whole) = exponent.whole() else {
-        let help = "write a whole number as the exponent; sqrt(...) is the square root of a number".to_owned();
+        let help =
+            "write a whole number as the exponent; sqrt(...) is the square root of a number".to_owned();
         return Err(wrong("the exponent of a power must be a whole number", help));
     };
     if whole.abs() > MOST_EXPONENT {
@@ -147,7 +148,8 @@ fn whole_exponent(exponent: &Term) -> Result<i32, Fault> {
 
 /// The fault of a function, or a comparison, where a number must stand.
 fn not_of_numbers(term: &Term, name: &str) -> Fault {
-    let help = "write the value: sqrt is the only function of a number. Strengths of forces may be formulas".to_owned();
+    let help = "write the value: sqrt is the only function of a number. Strengths of forces may be formulas"
+        .to_owned();
     fault(term, format!("`{name}` may stand in formulas of what moves only"), "in place of a number", help)
 }
 
@@ -193,8 +195,9 @@ pub(super) fn size(unit: Unit) -> Rational {
     }
 }
 
-/// The square root of a positive rational: exact where it is rational, else to so many digits.
-fn root(value: &Rational) -> Rational {
+/// The square root of a rational that is not negative: exact where it is rational, else to 42 digits. Roots of numbers
+/// in model files are this.
+pub fn root(value: &Rational) -> Rational {
     let of = |n: &BigInt| n.magnitude().sqrt();
     let positive = |n: BigUint| BigInt::from_biguint(Sign::Plus, n);
     let (numerator, denominator) = (of(value.numer()), of(value.denom()));
@@ -236,7 +239,9 @@ pub(super) fn syntax(text: &str, at: usize, is_known: &dyn Fn(&str) -> bool) -> 
                 names::list(&expression::UNITS.map(|(name, _)| name))
             )
         }
-        Some(_) => "write numbers, names, pi, functions such as sqrt(...), + - * / ^ and parentheses".to_owned(),
+        Some(_) => {
+            "write numbers, names, pi, functions such as sqrt(...), + - * / ^ and parentheses".to_owned()
+        }
     };
     let label = if rest.is_empty() { "breaks off" } else { "cannot go on here" };
     let length = if word.is_empty() { rest.chars().next().map_or(0, char::len_utf8) } else { word.len() };

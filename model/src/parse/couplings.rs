@@ -40,11 +40,15 @@ fn by_formula(reader: &mut Reader<'_>, section: &Section<'_>, second: JointCoord
     let known = seen::known(reader, &[]);
     let refuse = |name: &str, seen: Seen| {
         let words = match seen {
-            Seen::Coordinate(on) if on == second => {
-                [format!("a coupler's formula cannot name its second coordinate `{name}`"), "itself".to_owned()]
-            }
+            Seen::Coordinate(on) if on == second => [
+                format!("a coupler's formula cannot name its second coordinate `{name}`"),
+                "itself".to_owned(),
+            ],
             Seen::Coordinate(_) => return None,
-            _ => [format!("a coupler's formula cannot depend on `{name}`"), "not a joint coordinate".to_owned()],
+            _ => [
+                format!("a coupler's formula cannot depend on `{name}`"),
+                "not a joint coordinate".to_owned(),
+            ],
         };
         let [message, label] = words;
         let help = "write a formula of other joint coordinates and of parameters: a [[driver]] moves in time";

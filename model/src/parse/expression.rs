@@ -282,12 +282,8 @@ fn exponent(input: &mut Input<'_>) -> ModalResult<Term> {
 fn primary(input: &mut Input<'_>) -> ModalResult<Term> {
     let of = |kind: fn(String) -> Kind| move |text: &str| kind(text.to_owned());
     let within = delimited(word('('), cut_err(any_term), cut_err(')'));
-    let kind = alt((
-        number.map(of(Kind::Number)),
-        call,
-        name.map(of(Kind::Name)),
-        within.map(|term| term.kind),
-    ));
+    let kind =
+        alt((number.map(of(Kind::Number)), call, name.map(of(Kind::Name)), within.map(|term| term.kind)));
     word(kind.with_span()).map(|(kind, span)| Term { kind, span }).parse_next(input)
 }
 

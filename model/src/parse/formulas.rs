@@ -1,6 +1,6 @@
 //! From an expression to the formula that it denotes: what moves, time, parameters and inputs, and functions of these.
 
-use super::computed::{Fault, MOST_EXPONENT, MOST_WEIGHT, size, syntax};
+use super::computed::{Fault, MOST_EXPONENT, MOST_WEIGHT, root, size, syntax};
 use super::expression::{self, Kind, Term};
 use super::functions;
 use super::names;
@@ -9,6 +9,7 @@ use super::units::pi;
 use crate::number::in_range;
 use crate::{Formula, Model, Number, Operation, Rational, Seen, parse_decimal};
 use gyro_program::elementary::Function;
+use num_traits::Signed;
 
 /// What names in formulas mean, and which of them a place allows.
 pub(super) struct Named<'m> {
@@ -283,8 +284,23 @@ impl Build<'_, '_> {
         if !has_root {
             return Ok(power);
         }
-        let root = self.call(Function::Sqrt, [base; 2]);
+        if self.is_negative(base) {
+            return Err(fault(term, "a negative number has no square root", "write a whole exponent"));
+        }
+        let root = self.root(base);
         Ok(self.product(power, root))
+    }
+
+    /// The square root; of a number it is one.
+    pub(super) fn root(&mut self, radicand: usize) -> usize {
+        match self.number(radicand) {
+            Some(Number::Exact(value)) if !value.is_negative() => self.exact(root(&value)),
+            _ => self.call(Function::Sqrt, [radicand; 2]),
+        }
+    }
+
+    pub(super) fn is_negative(&self, place: usize) -> bool {
+        matches!(self.number(place), Some(Number::Exact(value)) if value.is_negative())
     }
 
     fn whole_power(&mut self, base: usize, exponent: i32) -> usize {
@@ -317,12 +333,7 @@ impl Build<'_, '_> {
     }
 
     /// An operation on numbers of the model file, done exactly.
-    fn folded(
-        &mut self,
-        a: usize,
-        b: usize,
-        of: impl Fn(Number, Number) -> Option<Number>,
-    ) -> Option<usize> {
+    fn folded(&mut self, a: usize, b: usize, of: impl Fn(Number, Number) -> Option<Number>) -> Option<usize> {
         let number = of(self.number(a)?, self.number(b)?).filter(is_short)?;
         Some(self.push(Operation::Number(number)))
     }

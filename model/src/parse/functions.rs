@@ -48,7 +48,11 @@ pub(super) fn call(
 ) -> Result<usize, Fault> {
     let Some((_, takes)) = ALL.iter().find(|(known, _)| *known == name) else {
         let known: Vec<&str> = ALL.iter().map(|(name, _)| *name).collect();
-        let help = if name == "log" { "write ln(...) or log10(...)".to_owned() } else { names::instead(name, &known) };
+        let help = if name == "log" {
+            "write ln(...) or log10(...)".to_owned()
+        } else {
+            names::instead(name, &known)
+        };
         let Fault { span, words } = fault(term, &format!("there is no function `{name}`"), &help);
         return Err(Fault { span: span.start..span.start + name.len(), words });
     };
@@ -67,8 +71,15 @@ pub(super) fn call(
             Err(fault(term, "a condition stands in place of a number", help))
         }
         _ => {
-            let operands = operands.iter().map(|operand| build.of(operand)).collect::<Result<Vec<_>, _>>()?;
-            Ok(build.value(name, &operands))
+            let places = operands.iter().map(|operand| build.of(operand)).collect::<Result<Vec<_>, _>>()?;
+            if name == "sqrt" && build.is_negative(places[0]) {
+                return Err(fault(
+                    &operands[0],
+                    "a negative number has no square root",
+                    "write a number of 0 or more",
+                ));
+            }
+            Ok(build.value(name, &places))
         }
     }
 }
@@ -93,6 +104,7 @@ impl Build<'_, '_> {
                 let one = self.integer(1);
                 self.call(Function::Atan2, [x, one])
             }
+            ("sqrt", &[x]) => self.root(x),
             // Near zero the difference of two exponentials would lose its digits.
             ("sinh", &[x]) => {
                 let (tanh, cosh) = (self.call(Function::Tanh, [x; 2]), self.cosh(x));
@@ -142,7 +154,7 @@ impl Build<'_, '_> {
         let one = self.integer(1);
         let (less, more) = (self.difference(one, x), self.sum(one, x));
         let square = self.product(less, more);
-        self.call(Function::Sqrt, [square; 2])
+        self.root(square)
     }
 
     fn cosh(&mut self, x: usize) -> usize {
@@ -155,7 +167,7 @@ impl Build<'_, '_> {
     fn hypot(&mut self, a: usize, b: usize) -> usize {
         let [a, b] = [a, b].map(|x| self.product(x, x));
         let sum = self.sum(a, b);
-        self.call(Function::Sqrt, [sum; 2])
+        self.root(sum)
     }
 
     /// From y0 to y1 by the cubic `y0 + (y1 − y0) s² (3 − 2 s)` of `s = (x − x0) / (x1 − x0)`, and constant beyond.

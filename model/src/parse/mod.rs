@@ -37,6 +37,7 @@ mod tables;
 mod tensor;
 mod units;
 
+pub use computed::root;
 pub use names::{column, is_keyword, meant};
 pub use units::pi;
 

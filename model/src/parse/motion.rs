@@ -51,7 +51,8 @@ fn moves(reader: &Reader<'_>, text: &str) -> bool {
 fn in_time(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Motion> {
     let refuse = |name: &str, seen: Seen| {
         (seen != Seen::Time).then(|| {
-            let help = "write a formula of t and of parameters; a [[coupler]] follows other coordinates".to_owned();
+            let help =
+                "write a formula of t and of parameters; a [[coupler]] follows other coordinates".to_owned();
             [format!("a motion cannot depend on `{name}`"), "not the time".to_owned(), help]
         })
     };

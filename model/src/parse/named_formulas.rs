@@ -7,8 +7,8 @@ use super::numbers::{broken, wrong_within};
 use super::reader::Reader;
 use super::section::{Item, Section};
 use super::{names, tables};
-use crate::validate::{Owner, Place};
 use crate::Formula;
+use crate::validate::{Owner, Place};
 
 /// A formula whose names may not be known yet.
 struct Pending<'t> {
@@ -46,8 +46,9 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) {
         if let Some(at) = pending.iter().position(|one| !waits(one)) {
             let one = pending.remove(at);
             let known = reader.visible.clone();
-            let read =
-                laws::with_names(reader, &known, Inputs::Known, &formulas::any, |named| named.formula(one.text));
+            let read = laws::with_names(reader, &known, Inputs::Known, &formulas::any, |named| {
+                named.formula(one.text)
+            });
             let formula = read.unwrap_or_else(|fault| {
                 wrong_within(reader, one.item, one.text, fault);
                 Formula::zero()

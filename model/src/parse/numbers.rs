@@ -354,7 +354,8 @@ fn misused_unit(key: &Key, text: &str, term: &Term) -> Option<[String; 3]> {
 }
 
 fn input_within(name: &str) -> [String; 3] {
-    let help = format!("declare `{name}` under [parameters]: only strengths of forces may be computed from inputs");
+    let help =
+        format!("declare `{name}` under [parameters]: only strengths of forces may be computed from inputs");
     [format!("the input `{name}` cannot be part of a number"), "an input".to_owned(), help]
 }
 

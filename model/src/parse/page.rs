@@ -8,8 +8,8 @@ use super::names;
 use super::reader::Reader;
 use super::section::{Section, keyword};
 use super::{
-    bodies, contacts, controllers, couplings, events, forces, joints, named_formulas, outputs, parameters, point_masses,
-    seen, simulation,
+    bodies, contacts, controllers, couplings, events, forces, joints, named_formulas, outputs, parameters,
+    point_masses, seen, simulation,
 };
 use crate::keys::{FILE, GENERATE};
 use crate::validate::{Owner, Place};

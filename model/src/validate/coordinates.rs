@@ -95,11 +95,7 @@ fn cycle(model: &Model, groups: &Groups, index: usize, first: JointCoordinate) -
         place: Place { owner: Owner::Coupler(index), key: "" },
         also,
         message: format!("coupler `{}` closes a cycle of couplers", coupler.name),
-        label: format!(
-            "{} and {} are coupled without it",
-            shown(model, first),
-            shown(model, coupler.second)
-        ),
+        label: format!("{} and {} are coupled without it", shown(model, first), shown(model, coupler.second)),
         help: "remove a coupler of the cycle: with it the coordinates would be coupled twice".to_owned(),
     }
 }

@@ -3,8 +3,8 @@
 use std::f64::consts::FRAC_PI_3;
 
 use gyro_model::{
-    AssemblyError, Coupler, Coupling, Driver, JointCoordinate, JointKind, Kinematics, Model, Motion, Move, Number,
-    Rational, RowOwner, Start, read,
+    AssemblyError, Coupler, Coupling, Driver, JointCoordinate, JointKind, Kinematics, Model, Motion, Move,
+    Number, Rational, RowOwner, Start, read,
 };
 
 /// Rounding of some dozens of operations on numbers of order one.

@@ -66,70 +66,83 @@ fn call(function: Function, x: f64, y: f64) -> f64 {
         Function::Ln => x.ln(),
         Function::Abs => x.abs(),
         Function::Floor => x.floor(),
-        Function::When => if x > 0.0 { y } else { 0.0 },
-        Function::Unless => if x > 0.0 { 0.0 } else { y },
+        Function::When => {
+            if x > 0.0 {
+                y
+            } else {
+                0.0
+            }
+        }
+        Function::Unless => {
+            if x > 0.0 {
+                0.0
+            } else {
+                y
+            }
+        }
     }
 }
 
 type Law = fn(f64, f64, f64) -> f64;
 
-const LAWS: [(&str, Law); 38] = [
-    ("x", |x, _, _| x),
-    ("-k*x^3 + half*x rate", |x, y, _| -2.0 * x.powi(3) + 0.5 * y),
-    ("double - 1", |x, _, _| 2.0 * (x + 0.5) - 1.0),
-    ("x - x rate - t", |x, y, t| x - y - t),
-    ("x / (2 + t) / 4 * 3", |x, _, t| x / (2.0 + t) / 4.0 * 3.0),
-    ("-x^2", |x, _, _| -x * x),
-    ("(x^2 + 1)^-2", |x, _, _| (x * x + 1.0).powi(-2)),
-    ("(x^2 + 1)^1.5", |x, _, _| (x * x + 1.0).powf(1.5)),
-    ("(x^2 + 1)^(-1/2)", |x, _, _| (x * x + 1.0).powf(-0.5)),
-    ("(x^2 + 1)^0.3", |x, _, _| (x * x + 1.0).powf(0.3)),
-    ("(x^2 + 1)^t", |x, _, t| (x * x + 1.0).powf(t)),
-    ("x*30 deg", |x, _, _| x * 30.0 * std::f64::consts::PI / 180.0),
-    ("x + 60 rpm", |x, _, _| x + std::f64::consts::TAU),
-    ("pi*x", |x, _, _| std::f64::consts::PI * x),
-    ("sin(x) + cos(x rate) + tan(t)", |x, y, t| x.sin() + y.cos() + t.tan()),
-    ("asin(0.3*tanh(x))", |x, _, _| (0.3 * x.tanh()).asin()),
-    ("acos(0.3*tanh(x))", |x, _, _| (0.3 * x.tanh()).acos()),
-    ("atan(x)", |x, _, _| x.atan()),
-    ("atan2(x, x rate)", |x, y, _| x.atan2(y)),
-    ("sinh(x)", |x, _, _| x.sinh()),
-    ("cosh(x)", |x, _, _| x.cosh()),
-    ("exp(-x) + ln(1 + x^2) + log10(2 + x^2)", |x, _, _| {
-        (-x).exp() + (1.0 + x * x).ln() + (2.0 + x * x).log10()
-    }),
-    ("sqrt(x^2)", |x, _, _| x.abs()),
-    ("abs(x)", |x, _, _| x.abs()),
-    ("sign(x)", |x, _, _| x.signum()),
-    ("min(x, x rate)", |x, y, _| x.min(y)),
-    ("max(x, x rate)", |x, y, _| x.max(y)),
-    ("min(min(x, x rate), max(t, 0.3))", |x, y, t| x.min(y).min(t.max(0.3))),
-    ("hypot(x, x rate)", |x, y, _| x.hypot(y)),
-    ("floor(3*x)", |x, _, _| (3.0 * x).floor()),
-    ("mod(x, 0.7)", |x, _, _| x.rem_euclid(0.7)),
-    ("step(x, -1, 2, 1.5, 3)", |x, _, _| {
-        let s = ((x + 1.0) / 2.5).clamp(0.0, 1.0);
-        2.0 + s * s * (3.0 - 2.0 * s)
-    }),
-    ("ramp(x, 0.1)", |x, _, _| 0.5 * (x + (x * x + 0.01).sqrt())),
-    ("if(x > 0, sqrt(x), -1)", |x, _, _| if x > 0.0 { x.sqrt() } else { -1.0 }),
-    ("if(x >= x rate, 1, 2) + if(x <= t, 10, 20)", |x, y, t| {
-        (if x >= y { 1.0 } else { 2.0 }) + (if x <= t { 10.0 } else { 20.0 })
-    }),
-    ("if(x > 0 and x rate < 0, x, t)", |x, y, t| if x > 0.0 && y < 0.0 { x } else { t }),
-    ("if(x > 0 or not(x rate < 0 and t > 0.5), x, t)", |x, y, t| {
-        if x > 0.0 || !(y < 0.0 && t > 0.5) { x } else { t }
-    }),
-    ("if((x + 1)*2 > 1, 1, if(x < -2, 2, 3))", |x, _, _| {
-        if (x + 1.0) * 2.0 > 1.0 {
-            1.0
-        } else if x < -2.0 {
-            2.0
-        } else {
-            3.0
-        }
-    }),
-];
+const LAWS: [(&str, Law); 38] =
+    [
+        ("x", |x, _, _| x),
+        ("-k*x^3 + half*x rate", |x, y, _| -2.0 * x.powi(3) + 0.5 * y),
+        ("double - 1", |x, _, _| 2.0 * (x + 0.5) - 1.0),
+        ("x - x rate - t", |x, y, t| x - y - t),
+        ("x / (2 + t) / 4 * 3", |x, _, t| x / (2.0 + t) / 4.0 * 3.0),
+        ("-x^2", |x, _, _| -x * x),
+        ("(x^2 + 1)^-2", |x, _, _| (x * x + 1.0).powi(-2)),
+        ("(x^2 + 1)^1.5", |x, _, _| (x * x + 1.0).powf(1.5)),
+        ("(x^2 + 1)^(-1/2)", |x, _, _| (x * x + 1.0).powf(-0.5)),
+        ("(x^2 + 1)^0.3", |x, _, _| (x * x + 1.0).powf(0.3)),
+        ("(x^2 + 1)^t", |x, _, t| (x * x + 1.0).powf(t)),
+        ("x*30 deg", |x, _, _| x * 30.0 * std::f64::consts::PI / 180.0),
+        ("x + 60 rpm", |x, _, _| x + std::f64::consts::TAU),
+        ("pi*x", |x, _, _| std::f64::consts::PI * x),
+        ("sin(x) + cos(x rate) + tan(t)", |x, y, t| x.sin() + y.cos() + t.tan()),
+        ("asin(0.3*tanh(x))", |x, _, _| (0.3 * x.tanh()).asin()),
+        ("acos(0.3*tanh(x))", |x, _, _| (0.3 * x.tanh()).acos()),
+        ("atan(x)", |x, _, _| x.atan()),
+        ("atan2(x, x rate)", |x, y, _| x.atan2(y)),
+        ("sinh(x)", |x, _, _| x.sinh()),
+        ("cosh(x)", |x, _, _| x.cosh()),
+        ("exp(-x) + ln(1 + x^2) + log10(2 + x^2)", |x, _, _| {
+            (-x).exp() + (1.0 + x * x).ln() + (2.0 + x * x).log10()
+        }),
+        ("sqrt(x^2)", |x, _, _| x.abs()),
+        ("abs(x)", |x, _, _| x.abs()),
+        ("sign(x)", |x, _, _| x.signum()),
+        ("min(x, x rate)", |x, y, _| x.min(y)),
+        ("max(x, x rate)", |x, y, _| x.max(y)),
+        ("min(min(x, x rate), max(t, 0.3))", |x, y, t| x.min(y).min(t.max(0.3))),
+        ("hypot(x, x rate)", |x, y, _| x.hypot(y)),
+        ("floor(3*x)", |x, _, _| (3.0 * x).floor()),
+        ("mod(x, 0.7)", |x, _, _| x.rem_euclid(0.7)),
+        ("step(x, -1, 2, 1.5, 3)", |x, _, _| {
+            let s = ((x + 1.0) / 2.5).clamp(0.0, 1.0);
+            2.0 + s * s * (3.0 - 2.0 * s)
+        }),
+        ("ramp(x, 0.1)", |x, _, _| 0.5 * (x + (x * x + 0.01).sqrt())),
+        ("if(x > 0, sqrt(x), -1)", |x, _, _| if x > 0.0 { x.sqrt() } else { -1.0 }),
+        ("if(x >= x rate, 1, 2) + if(x <= t, 10, 20)", |x, y, t| {
+            (if x >= y { 1.0 } else { 2.0 }) + (if x <= t { 10.0 } else { 20.0 })
+        }),
+        ("if(x > 0 and x rate < 0, x, t)", |x, y, t| if x > 0.0 && y < 0.0 { x } else { t }),
+        ("if(x > 0 or not(x rate < 0 and t > 0.5), x, t)", |x, y, t| {
+            if x > 0.0 || !(y < 0.0 && t > 0.5) { x } else { t }
+        }),
+        ("if((x + 1)*2 > 1, 1, if(x < -2, 2, 3))", |x, _, _| {
+            if (x + 1.0) * 2.0 > 1.0 {
+                1.0
+            } else if x < -2.0 {
+                2.0
+            } else {
+                3.0
+            }
+        }),
+    ];
 
 #[test]
 fn formulas_compute_what_they_say() {
@@ -161,7 +174,8 @@ fn formulas_are_short() {
 fn strengths_without_motion_are_numbers() {
     let motor = |value: &str| {
         let force = "[[force]]\nname = \"m\"\nkind = \"motor\"\njoint = \"x\"\n";
-        let page = format!("{PAGE}{force}value = {value:?}").replace("[[body]]\nname = \"ground\"", "[inputs]\nu = 1\n[[body]]\nname = \"ground\"");
+        let page = format!("{PAGE}{force}value = {value:?}")
+            .replace("[[body]]\nname = \"ground\"", "[inputs]\nu = 1\n[[body]]\nname = \"ground\"");
         let model = read("arm.toml", &page).unwrap_or_else(|problems| panic!("{problems}"));
         let numbers = model.forces[0].kind.parts().numbers;
         numbers[0].1[0].clone()

@@ -114,12 +114,14 @@ impl Page {
                 }
                 3 => {
                     let x = rates[dice.below(rates.len())].clone();
-                    let formula = Words { dice: &mut dice, names: names_of_power(&places, &rates) }.formula(depth);
+                    let formula =
+                        Words { dice: &mut dice, names: names_of_power(&places, &rates) }.formula(depth);
                     ("dissipation", format!("power = {:?}\n", format!("0.2*({x})^2 + 0.1*({formula})^2")))
                 }
                 _ => {
                     let Some(body) = self.moving() else { continue };
-                    let mut one = || format!("{:?}", Words { dice: &mut dice, names: names.clone() }.formula(1));
+                    let mut one =
+                        || format!("{:?}", Words { dice: &mut dice, names: names.clone() }.formula(1));
                     ("load", format!("body = \"b{body}\"\ntorque = [{}, 0, {}]\n", one(), one()))
                 }
             };
@@ -129,7 +131,13 @@ impl Page {
         self.elements += &format!("\n[[output]]\nname = \"told\"\nkind = \"formula\"\nof = {formula:?}\n");
     }
 
-    fn motor(&mut self, dice: &mut Dice, on: (usize, &'static str), names: &[String], depth: usize) -> String {
+    fn motor(
+        &mut self,
+        dice: &mut Dice,
+        on: (usize, &'static str),
+        names: &[String],
+        depth: usize,
+    ) -> String {
         let formula = Words { dice, names: names.to_vec() }.formula(depth);
         format!("{}value = {formula:?}\n", self.on(on.0, on.1))
     }

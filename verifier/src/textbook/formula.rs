@@ -4,7 +4,7 @@
 use super::jet::Jet;
 use super::scope::Scope;
 use crate::field::Field;
-use gyro_model::{Model, Number, Rational, Seen, column, parse_decimal, pi};
+use gyro_model::{Model, Number, Rational, Seen, column, parse_decimal, pi, root};
 
 /// What a formula may see of the mechanism.
 pub(super) type See<'s, F> = &'s dyn Fn(Seen) -> Option<Jet<F>>;
@@ -207,9 +207,10 @@ impl<'t, F: Field> Text<'t, '_, F> {
         };
         let (whole, has_root) = (halves.div_euclid(2), halves.rem_euclid(2) == 1);
         let one = self.constant(Rational::from_integer(1.into()));
-        let factors = (0..whole.unsigned_abs()).try_fold(one.clone(), |power, _| self.times(&power, &base))?;
+        let factors =
+            (0..whole.unsigned_abs()).try_fold(one.clone(), |power, _| self.times(&power, &base))?;
         let power = if whole < 0 { self.over(&one, &factors)? } else { factors };
-        let power = if has_root { moving(power.jet * self.scope.sqrt(&base.jet)?) } else { power };
+        let power = if has_root { self.times(&power, &self.root(&base)?)? } else { power };
         Some(Term::Number(power))
     }
 
@@ -305,9 +306,19 @@ impl<'t, F: Field> Text<'t, '_, F> {
             let (a, b) = (a.number()?.jet, b.number()?.jet);
             return Some(moving(self.choose(&condition.condition()?, &a, &b)));
         }
-        let operands = operands.into_iter().map(|operand| Some(operand.number()?.jet));
-        let operands = operands.collect::<Option<Vec<_>>>()?;
-        self.function(name, &operands).map(moving)
+        let operands = operands.into_iter().map(Term::number).collect::<Option<Vec<_>>>()?;
+        match (name, operands.as_slice()) {
+            ("sqrt", [x]) => self.root(x),
+            ("hypot", [a, b]) => {
+                let sum =
+                    self.of_both(&self.times(a, a)?, &self.times(b, b)?, |a, b| a + b, |a, b| Some(a + b))?;
+                self.root(&sum)
+            }
+            _ => {
+                let operands: Vec<_> = operands.into_iter().map(|operand| operand.jet).collect();
+                self.function(name, &operands).map(moving)
+            }
+        }
     }
 
     fn choose(&self, condition: &Condition<F>, a: &Jet<F>, b: &Jet<F>) -> Jet<F> {
@@ -348,7 +359,6 @@ impl<'t, F: Field> Text<'t, '_, F> {
                 let ten = parse_decimal("2.302585092994045684017991454684364207601101488")?;
                 scope.ln(x)? * self.constant(ten).jet.reciprocal()?
             }
-            ("sqrt", [x]) => scope.sqrt(x)?,
             ("abs", [x]) => scope.abs(x),
             ("sign", [x]) => {
                 let opposite = -x.clone();
@@ -356,7 +366,6 @@ impl<'t, F: Field> Text<'t, '_, F> {
             }
             ("min", [a, b]) => smaller(a, b),
             ("max", [a, b]) => larger(a, b),
-            ("hypot", [a, b]) => scope.sqrt(&(a * a + b * b))?,
             ("floor", [x]) => scope.floor(x),
             ("mod", [a, b]) => a - b * scope.floor(&(a * b.reciprocal()?)),
             ("step", [x, x0, y0, x1, y1]) => {
@@ -368,6 +377,14 @@ impl<'t, F: Field> Text<'t, '_, F> {
             ("ramp", [z, width]) => (z + scope.sqrt(&(z * z + width * width))?) * &scope.half,
             _ => return None,
         })
+    }
+
+    /// The square root, of a constant to 42 digits.
+    fn root(&self, x: &Value<F>) -> Option<Value<F>> {
+        match &x.exact {
+            Some(exact) => Some(self.constant(root(exact))),
+            None => self.scope.sqrt(&x.jet).map(moving),
+        }
     }
 
     fn constant(&self, value: Rational) -> Value<F> {

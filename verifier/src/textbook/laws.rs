@@ -49,7 +49,11 @@ impl<F: Field> Evaluation<'_, F> {
         let one = |by: Seen| {
             let see = |seen| {
                 let value = self.sight(seen)?.value;
-                Some(if seen == by { Jet::moving(value, self.scope.one.value.clone()) } else { Jet::constant(value) })
+                Some(if seen == by {
+                    Jet::moving(value, self.scope.one.value.clone())
+                } else {
+                    Jet::constant(value)
+                })
             };
             let slope = self.read(&formula.text, &see)?.derivative(&self.scope.zero.value).frozen();
             match by {
@@ -103,5 +107,27 @@ impl<F: Field> Evaluation<'_, F> {
             }
             kind => self.output(kind, &[], &[])?.get(number).cloned(),
         }
+    }
+}
+
+impl Evaluation<'_, f64> {
+    /// Whether all formulas of forces and outputs have finite values and derivatives here.
+    pub fn has_smooth_formulas(&self) -> bool {
+        let model = self.textbook.model;
+        let numbers = model.forces.iter().flat_map(|force| force.kind.parts().numbers);
+        let of_forces = numbers.flat_map(|(_, numbers)| numbers).filter_map(Number::formula);
+        let of_outputs = model.outputs.iter().filter_map(|output| output.kind.formula());
+        of_forces.chain(of_outputs).all(|formula| {
+            let see = |by: Seen| {
+                let see = |seen| {
+                    // Lengths, accelerations and multipliers are looked at where they come from.
+                    let value = self.sight(seen).map_or(1.0, |jet| jet.value);
+                    Some(if seen == by { Jet::moving(value, 1.0) } else { Jet::constant(value) })
+                };
+                self.read(&formula.text, &see)
+            };
+            let is_finite = |jet: Jet<f64>| jet.value.is_finite() && jet.rate.is_none_or(f64::is_finite);
+            formula.sees().all(|by| see(by).is_some_and(is_finite))
+        })
     }
 }

@@ -1,11 +1,11 @@
 //! Φ along a path, and what follows from it: Φ_q, Φ_π', ν, γ.
 
 use super::attitude::{Euler, compose, conjugate};
+use super::formula;
 use super::jet::Jet;
 use super::pose::{Path, Pose};
 use super::sparse::Sparse;
 use super::{Block, Evaluation};
-use super::formula;
 use crate::field::Field;
 use gyro_model::{Coupler, Coupling, Driver, JointCoordinate, JointKind, RowOwner, Seen};
 use std::array::from_fn;
