@@ -2,6 +2,7 @@
 
 use super::Evaluation;
 use super::jet::Jet;
+use super::laws::Slopes;
 use super::linear::Vector;
 use super::load::Load;
 use crate::field::Field;
@@ -56,13 +57,14 @@ impl<F: Field> Evaluation<'_, F> {
             ForceKind::Link { .. } => self.add_link(forces, kind)?,
             ForceKind::Load { .. } => self.add_load(forces, kind)?,
             ForceKind::Potential { energy } => {
-                let (energy, slopes) = self.slopes(energy, |seen| matches!(seen, Seen::Coordinate(_)))?;
-                forces.potential = &forces.potential + energy;
-                slopes.iter().for_each(|(on, slope)| self.push_along(forces, *on, &-slope.clone()));
+                let Slopes { value, along } =
+                    self.slopes(energy, |seen| matches!(seen, Seen::Coordinate(_)))?;
+                forces.potential = &forces.potential + value;
+                along.iter().for_each(|(on, slope)| self.push_along(forces, *on, &-slope.clone()));
             }
             ForceKind::Dissipation { power } => {
-                let (_, slopes) = self.slopes(power, |seen| matches!(seen, Seen::Rate(_)))?;
-                for (on, slope) in slopes {
+                let Slopes { along, .. } = self.slopes(power, |seen| matches!(seen, Seen::Rate(_)))?;
+                for (on, slope) in along {
                     self.work_along(forces, on, &-(slope * &self.scope.half));
                 }
             }

@@ -7,6 +7,13 @@ use crate::field::Field;
 use gyro_model::{ForceKind, JointCoordinate, Number, OutputKind, Seen};
 use std::cell::RefCell;
 
+/// A formula with its derivatives.
+pub(super) struct Slopes<F> {
+    pub(super) value: Jet<F>,
+    /// By each coordinate, or by its rate.
+    pub(super) along: Vec<(JointCoordinate, Jet<F>)>,
+}
+
 impl<F: Field> Evaluation<'_, F> {
     /// A strength; `None` where it is not defined.
     pub(super) fn strength(&self, number: &Number) -> Option<Jet<F>> {
@@ -32,11 +39,7 @@ impl<F: Field> Evaluation<'_, F> {
 
     /// The value of a formula and its derivatives by those numbers that it is asked of, each of which is independent of
     /// the others.
-    pub(super) fn slopes(
-        &self,
-        number: &Number,
-        is_meant: impl Fn(Seen) -> bool,
-    ) -> Option<(Jet<F>, Vec<(JointCoordinate, Jet<F>)>)> {
+    pub(super) fn slopes(&self, number: &Number, is_meant: impl Fn(Seen) -> bool) -> Option<Slopes<F>> {
         let formula = number.formula()?;
         let value = self.read(&formula.text, &|seen| self.sight(seen))?.frozen();
         let met = RefCell::new(Vec::new());
@@ -61,7 +64,8 @@ impl<F: Field> Evaluation<'_, F> {
                 _ => None,
             }
         };
-        Some((value, met.into_inner().into_iter().map(one).collect::<Option<_>>()?))
+        let along = met.into_inner().into_iter().map(one).collect::<Option<_>>()?;
+        Some(Slopes { value, along })
     }
 
     /// The value of an output that is a formula, and may see any other.

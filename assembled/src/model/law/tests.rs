@@ -12,7 +12,7 @@ impl Read<f64> for Inputs {
         }
     }
 
-    fn slope(&self, _: &Amount<f64>, _: gyro_model::Seen) -> f64 {
+    fn slope(&self, _: &Amount<f64>, _: Seen) -> f64 {
         f64::NAN
     }
 }
