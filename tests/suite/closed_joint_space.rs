@@ -197,9 +197,10 @@ where
     );
 }
 
-const CHECKED: [&str; 30] = [
+const CHECKED: [&str; 31] = [
     "all-joints",
     "armature",
+    "armature-of-cut-slide",
     "armatures-in-loop",
     "cam",
     "carried-four-bar",

@@ -204,14 +204,28 @@ pub struct Directions<'a> {
 impl Directions<'_> {
     /// One rate of the state is one, all others are zero, and time stands still.
     fn of_rate(&self, graph: &mut Graph, rate: usize) -> Direction {
+        let by_rate = self.by_rate(graph, rate);
+        self.along(graph, |_, u| by_rate[u])
+    }
+
+    /// The rates alone change, one of the state by one: what is differentiated may have rates of the sums, too, which
+    /// are symbols of their own.
+    pub fn of_rate_alone(&self, graph: &mut Graph, rate: usize) -> Direction {
+        let by_rate = self.by_rate(graph, rate).into_iter().enumerate();
+        by_rate.filter(|(_, by)| *by != Graph::ZERO).map(|(u, by)| (Symbol::Rate(u), by)).collect()
+    }
+
+    /// The derivatives of the tree's rates, and of the rates of the sums behind them, by a rate of the state.
+    fn by_rate(&self, graph: &mut Graph, rate: usize) -> Vec<ExprId> {
         let of = |u: usize| {
             let columns = self.embedding.rates.get(u).map_or(&[][..], |motion| &motion.columns);
             columns.iter().find(|(unknown, _)| *unknown == rate).map_or(Graph::ZERO, |column| column.1)
         };
-        let sums: Vec<_> =
-            self.angles.places().map(|(_, sum)| sum.sum(graph, |_, place| of(place.u))).collect();
-        let first = self.layout.n_tree_rates();
-        self.along(graph, |_, u| if u < first { of(u) } else { sums[u - first] })
+        let mut all: Vec<_> = (0..self.layout.n_tree_rates()).map(of).collect();
+        for (_, sum) in self.angles.places() {
+            all.push(sum.sum(graph, |_, place| of(place.u)));
+        }
+        all
     }
 
     /// All rates as they are, and constant but for what time changes.

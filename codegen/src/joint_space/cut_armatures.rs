@@ -9,7 +9,7 @@ use crate::derive::armature::Rotor;
 use crate::derive::joint_coordinate;
 use crate::derive::system::System;
 use crate::expr::definitions::Definitions;
-use crate::expr::differentiate::{Derivative, Direction};
+use crate::expr::differentiate::Derivative;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::solve::gram_schmidt::Armature;
@@ -58,11 +58,8 @@ impl CutArmature {
         let rate = system.expanded(&held, &rate)[0];
         let graph = &mut system.graph;
         let by_rate = |rate_of_state: usize| {
-            let unit = directions.embedding.rates.iter().enumerate().filter_map(|(u, motion)| {
-                let column = motion.columns.iter().find(|(unknown, _)| *unknown == rate_of_state)?;
-                Some((Symbol::Rate(u), column.1))
-            });
-            Derivative::new(&none, Direction::from_iter(unit)).of(graph, rate)
+            let alone = directions.of_rate_alone(graph, rate_of_state);
+            Derivative::new(&none, alone).of(graph, rate)
         };
         let by_rates = (0..layout.n_rates).map(by_rate).collect();
         let motion = directions.of_motion(&mut system.graph);
