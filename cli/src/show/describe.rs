@@ -7,7 +7,7 @@ use crate::events;
 use crate::scene::Scene;
 use crate::verdict::Outcome;
 use gyro_model::{
-    Body, ForceKind, JointEnd, LoadFrame, Model, OutputKind, Shape, ShapeKind, Support, Vector,
+    Body, ForceKind, JointEnd, LoadFrame, Model, Number, OutputKind, Shape, ShapeKind, Support, Vector,
 };
 use gyro_runner::{Sample, energy_error};
 use gyro_show::{Column, Reaction, Run, Scale};
@@ -129,7 +129,10 @@ fn springs(model: &Model) -> Vec<usize> {
 }
 
 fn loads(model: &Model) -> Vec<gyro_show::Load> {
+    // The page knows no formulas.
+    let is_formula = |number: &Number| number.formula().is_some();
     let load = |force: &gyro_model::Force| match &force.kind {
+        ForceKind::Load { force, torque, .. } if force.iter().chain(torque).any(is_formula) => None,
         ForceKind::Load { body, point, force: value, torque, frame } => Some(gyro_show::Load {
             name: force.name.clone(),
             body: *body,

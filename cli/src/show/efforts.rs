@@ -22,6 +22,10 @@ fn along(model: &Model, kind: &ForceKind) -> Option<Effort> {
         _ => parts.word,
     };
     let numbers: Vec<_> = parts.numbers.iter().map(|(name, numbers)| (*name, &numbers[0])).collect();
+    // The page knows no formulas.
+    if numbers.iter().any(|(_, number)| number.formula().is_some()) {
+        return None;
+    }
     parts.on.map(|(on, _)| effort(model, on, law, &numbers))
 }
 

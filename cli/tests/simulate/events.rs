@@ -154,7 +154,7 @@ fn what_cannot_be_seen_is_refused() {
     fs::write(folder.0.join("oscillators.toml"), OSCILLATORS).unwrap();
     let run = |event| simulate(&folder, &["oscillators.toml", "--engine", "assembled", "--event", event]);
     refused(&run("sinus=0"), "`sinus` names nothing that moves and no parameter; write `sine`");
-    refused(&run("2*sine rate - cosinus>0"), "`cosinus` names no column");
+    refused(&run("2*sine rate - cosinus>0"), "`cosinus` names nothing that moves");
     refused(&run("(sine=0"), "close the parenthesis");
     refused(&run("2*level=0"), "names nothing that moves");
     refused(&run("cos(sine)=0"), "the only function is sqrt");

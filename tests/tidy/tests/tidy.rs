@@ -36,8 +36,8 @@ const LINES: usize = 500;
 const STAGES: [(&str, &str); 5] = [
     (
         "model",
-        "scalar number spatial lines spline motion directions elements joint_kind shape keys kinematics tree controller formula event \
-         contact validate assemble diagnostics numbers redundancy parse queries",
+        "scalar coordinate number spatial lines spline sight motion directions elements joint_kind shape keys kinematics tree \
+         controller event contact validate assemble diagnostics numbers redundancy parse queries",
     ),
     (
         "codegen",
