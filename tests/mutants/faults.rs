@@ -115,7 +115,7 @@ const FAULTS: &[Fault] = &[
     fault("derive/forces.rs", "chain", "let on_first = «graph.neg_vec(&on_second)»;", "on_second"),
     fault("derive/forces.rs", "tether", "let force = «graph.sub(elastic, drag)»;", "elastic"),
     fault("derive/forces.rs", "loads", "(given_force, «graph.transposed_vec(&pose.a, &given_torque)»)", "graph.mat_vec(&pose.a, &given_torque)"),
-    fault("derive/forces.rs", "loads", "torque: «system.graph.cross(&self.point, &in_body)»", "system.graph.cross(&in_body, &self.point)"),
+    fault("derive/forces.rs", "loads", "torque: «system.graph.cross(&end.point, &in_body)»", "system.graph.cross(&in_body, &end.point)"),
     fault("derive/forces.rs", "loads", "let power = «graph.add(pushing, turning)»;", "pushing"),
     fault("derive/forces.rs", "friction", "let sliding = «system.graph.tanh(ratio)»;", "ratio"),
     fault("derive/forces.rs", "friction", "(graph.mat_vec(&joint.relative, &drag), «graph.neg_vec(&drag)»)", "drag"),

@@ -157,7 +157,7 @@ fn what_cannot_be_seen_is_refused() {
     refused(&run("2*sine rate - cosinus>0"), "`cosinus` names nothing that moves");
     refused(&run("(sine=0"), "close the parenthesis");
     refused(&run("2*level=0"), "names nothing that moves");
-    refused(&run("cos(sine)=0"), "the only function is sqrt");
+    refused(&run("cosinus(sine)=0"), "there is no function `cosinus`");
     refused(&run("sine"), "a column or a formula of some, =, > or <, and a level were expected");
     refused(&run("sine-=0"), "write a number, a name or a parenthesis after the last operator");
     let root = run("sqrt(sine - 2)=0");

@@ -153,6 +153,12 @@ fn not_of_numbers(term: &Term, name: &str) -> Fault {
     fault(term, format!("`{name}` may stand in formulas of what moves only"), "in place of a number", help)
 }
 
+/// A fault of a term, with no more to say of the place.
+pub(super) fn here(term: &Term, message: &str, help: &str) -> Fault {
+    let words = [message, "here", help].map(str::to_owned);
+    Fault { span: term.span.clone(), words }
+}
+
 fn fault(term: &Term, message: String, label: &str, help: String) -> Fault {
     Fault { span: term.span.clone(), words: [message, label.to_owned(), help] }
 }

@@ -2,7 +2,7 @@
 
 use super::formulas::Inputs;
 use super::laws;
-use super::numbers::wrong_within;
+use super::lookup::wrong_within;
 use super::reader::Reader;
 use super::section::Section;
 use super::{motion, references, seen, tables};

@@ -2,7 +2,7 @@
 
 use super::formulas::{self, Inputs};
 use super::laws;
-use super::numbers::wrong_within;
+use super::lookup::wrong_within;
 use super::reader::Reader;
 use super::section::{Item, Section};
 use super::seen::{self, Known};

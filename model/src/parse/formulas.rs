@@ -1,15 +1,14 @@
 //! From an expression to the formula that it denotes: what moves, time, parameters and inputs, and functions of these.
 
-use super::computed::{Fault, MOST_EXPONENT, MOST_WEIGHT, root, size, syntax};
+use super::build::Build;
+use super::computed::{Fault, MOST_EXPONENT, here as fault, size, syntax};
 use super::expression::{self, Kind, Term};
 use super::functions;
 use super::names;
 use super::seen::Known;
 use super::units::pi;
 use crate::number::in_range;
-use crate::{Formula, Model, Number, Operation, Rational, Seen, parse_decimal};
-use gyro_program::elementary::Function;
-use num_traits::Signed;
+use crate::{Formula, Model, Number, Operation, Seen, parse_decimal};
 
 /// What names in formulas mean, and which of them a place allows.
 pub(super) struct Named<'m> {
@@ -52,9 +51,9 @@ impl Named<'_> {
         }
         let is_known = |name: &str| self.column(name).is_some() || (self.number)(name).is_some();
         let term = expression::parse(text).map_err(|at| syntax(text, at, &is_known))?;
-        let mut build = Build { named: self, operations: Vec::new() };
-        let last = build.of(&term)?;
-        Ok(Formula { text: text.to_owned(), operations: reachable(&build.operations, last) })
+        let mut reading = Reading { named: self, build: Build::default() };
+        let last = reading.of(&term)?;
+        Ok(Formula { text: text.to_owned(), operations: reading.build.up_to(last) })
     }
 
     /// The same, which must not be a constant.
@@ -69,18 +68,18 @@ impl Named<'_> {
     }
 }
 
-/// A formula that is being built.
-pub(super) struct Build<'b, 'm> {
+/// A text that becomes a formula.
+struct Reading<'b, 'm> {
     named: &'b Named<'m>,
-    operations: Vec<Operation>,
+    build: Build,
 }
 
-impl Build<'_, '_> {
+impl Reading<'_, '_> {
     /// The place of what a term denotes.
-    pub(super) fn of(&mut self, term: &Term) -> Result<usize, Fault> {
+    fn of(&mut self, term: &Term) -> Result<usize, Fault> {
         Ok(match &term.kind {
             Kind::Number(text) => match parse_decimal(text).filter(in_range) {
-                Some(value) => self.exact(value),
+                Some(value) => self.build.exact(value),
                 None => {
                     return Err(fault(
                         term,
@@ -90,30 +89,28 @@ impl Build<'_, '_> {
                 }
             },
             Kind::Name(name) => self.name(term, name)?,
-            Kind::Call(name, operands) => functions::call(self, term, name, operands)?,
+            Kind::Call(name, operands) => self.call(term, name, operands)?,
             Kind::Negative(a) => {
                 let a = self.of(a)?;
-                self.negative(a)
+                self.build.negative(a)
             }
-            Kind::Sum(a, b) => self.two(a, b, Self::sum)?,
-            Kind::Difference(a, b) => self.two(a, b, Self::difference)?,
-            Kind::Product(a, b) => self.two(a, b, Self::product)?,
+            Kind::Sum(a, b) => self.two(a, b, Build::sum)?,
+            Kind::Difference(a, b) => self.two(a, b, Build::difference)?,
+            Kind::Product(a, b) => self.two(a, b, Build::product)?,
             Kind::Quotient(a, b) => {
                 let (a, divisor) = (self.of(a)?, self.of(b)?);
-                let is_zero =
-                    matches!(&self.operations[divisor], Operation::Number(number) if number.is_zero());
-                if is_zero {
+                if self.build.is_zero(divisor) {
                     return Err(fault(b, "a formula divides by zero", "divide by something that is not 0"));
                 }
-                self.quotient(a, divisor)
+                self.build.quotient(a, divisor)
             }
             Kind::Power(a, exponent) => {
                 let base = self.of(a)?;
                 self.power(term, base, exponent)?
             }
             Kind::In(a, unit) => {
-                let (a, unit) = (self.of(a)?, self.exact(size(*unit)));
-                self.product(a, unit)
+                let (a, unit) = (self.of(a)?, self.build.exact(size(*unit)));
+                self.build.product(a, unit)
             }
             Kind::Greater(..) | Kind::AtLeast(..) | Kind::And(..) | Kind::Or(..) => {
                 let help = "write if(condition, a, b), which is a where it holds and b elsewhere";
@@ -122,9 +119,33 @@ impl Build<'_, '_> {
         })
     }
 
-    fn two(&mut self, a: &Term, b: &Term, of: fn(&mut Self, usize, usize) -> usize) -> Result<usize, Fault> {
+    /// A call of a function.
+    fn call(&mut self, term: &Term, name: &str, operands: &[Term]) -> Result<usize, Fault> {
+        functions::check(term, name, operands.len())?;
+        match (name, operands) {
+            ("if", [condition, a, b]) => {
+                let chosen = [self.of(a)?, self.of(b)?];
+                self.choice(condition, chosen)
+            }
+            ("not", _) => {
+                let help = "write if(condition, a, b), which is a where it holds and b elsewhere";
+                Err(fault(term, "a condition stands in place of a number", help))
+            }
+            _ => {
+                let places =
+                    operands.iter().map(|operand| self.of(operand)).collect::<Result<Vec<_>, _>>()?;
+                if name == "sqrt" && self.build.is_negative(places[0]) {
+                    let help = "write a number of 0 or more";
+                    return Err(fault(&operands[0], "a negative number has no square root", help));
+                }
+                Ok(functions::value(&mut self.build, name, &places))
+            }
+        }
+    }
+
+    fn two(&mut self, a: &Term, b: &Term, of: fn(&mut Build, usize, usize) -> usize) -> Result<usize, Fault> {
         let (a, b) = (self.of(a)?, self.of(b)?);
-        Ok(of(self, a, b))
+        Ok(of(&mut self.build, a, b))
     }
 
     fn name(&mut self, term: &Term, name: &str) -> Result<usize, Fault> {
@@ -137,10 +158,10 @@ impl Build<'_, '_> {
                 "give the parameter, the input or the joint another name",
             )),
             (Some(seen), None, _) => self.seen(term, name, seen),
-            (None, Some(number), _) => Ok(self.push(Operation::Number(number))),
+            (None, Some(number), _) => Ok(self.build.push(Operation::Number(number))),
             (None, None, Some((_, formula))) => self.spliced(term, name, formula),
             (None, None, None) if name == "t" => self.seen(term, name, Seen::Time),
-            (None, None, None) if name == "pi" => Ok(self.exact(pi())),
+            (None, None, None) if name == "pi" => Ok(self.build.exact(pi())),
             (None, None, None) if named.refused_inputs.iter().any(|input| input == name) => {
                 let words = [
                     format!("`{name}` is an input"),
@@ -162,7 +183,7 @@ impl Build<'_, '_> {
     fn seen(&mut self, term: &Term, name: &str, seen: Seen) -> Result<usize, Fault> {
         match (self.named.refuse)(name, seen) {
             Some(words) => Err(Fault { span: term.span.clone(), words }),
-            None => Ok(self.push(Operation::Seen(seen))),
+            None => Ok(self.build.push(Operation::Seen(seen))),
         }
     }
 
@@ -176,66 +197,23 @@ impl Build<'_, '_> {
                     let message = format!("the formula `{name}` depends on an input");
                     return Err(fault(term, &message, "write a formula without inputs here"));
                 }
-                other => self.push(other.moved(|place| places[place])),
+                other => self.build.push(other.moved(|place| places[place])),
             };
             places.push(place);
         }
         Ok(places[places.len() - 1])
     }
 
-    pub(super) fn exact(&mut self, value: Rational) -> usize {
-        self.push(Operation::Number(Number::Exact(value)))
-    }
-
-    pub(super) fn integer(&mut self, value: i64) -> usize {
-        self.push(Operation::Number(Number::integer(value)))
-    }
-
-    pub(super) fn call(&mut self, function: Function, operands: [usize; 2]) -> usize {
-        self.push(Operation::Call(function, operands))
-    }
-
-    pub(super) fn negative(&mut self, a: usize) -> usize {
-        match self.number(a) {
-            Some(number) => self.push(Operation::Number(-number)),
-            None => self.push(Operation::Negative(a)),
-        }
-    }
-
-    pub(super) fn sum(&mut self, a: usize, b: usize) -> usize {
-        self.folded(a, b, |a, b| Some(a + b)).unwrap_or_else(|| match [a, b].map(|x| self.is_zero(x)) {
-            [true, _] => b,
-            [_, true] => a,
-            _ => self.push(Operation::Sum(a, b)),
-        })
-    }
-
-    pub(super) fn difference(&mut self, a: usize, b: usize) -> usize {
-        self.folded(a, b, |a, b| Some(a - b)).unwrap_or_else(|| match [a, b].map(|x| self.is_zero(x)) {
-            [true, _] => self.negative(b),
-            [_, true] => a,
-            _ => self.push(Operation::Difference(a, b)),
-        })
-    }
-
-    pub(super) fn product(&mut self, a: usize, b: usize) -> usize {
-        self.folded(a, b, |a, b| Some(a * b)).unwrap_or_else(|| self.push(Operation::Product(a, b)))
-    }
-
-    pub(super) fn quotient(&mut self, a: usize, b: usize) -> usize {
-        self.folded(a, b, Number::over).unwrap_or_else(|| self.push(Operation::Quotient(a, b)))
-    }
-
     /// The first where the condition holds, the second elsewhere; neither is of any matter where it is not taken.
-    pub(super) fn choice(&mut self, condition: &Term, [a, b]: [usize; 2]) -> Result<usize, Fault> {
+    fn choice(&mut self, condition: &Term, [a, b]: [usize; 2]) -> Result<usize, Fault> {
         Ok(match &condition.kind {
             Kind::Greater(x, y) => {
-                let margin = self.two(x, y, Self::difference)?;
-                self.where_positive(margin, [a, b])
+                let margin = self.two(x, y, Build::difference)?;
+                self.build.where_positive(margin, [a, b])
             }
             Kind::AtLeast(x, y) => {
-                let margin = self.two(y, x, Self::difference)?;
-                self.where_positive(margin, [b, a])
+                let margin = self.two(y, x, Build::difference)?;
+                self.build.where_positive(margin, [b, a])
             }
             Kind::And(p, q) => {
                 let inner = self.choice(q, [a, b])?;
@@ -255,121 +233,32 @@ impl Build<'_, '_> {
         })
     }
 
-    /// The first where this is greater than zero, the second elsewhere.
-    pub(super) fn where_positive(&mut self, margin: usize, [a, b]: [usize; 2]) -> usize {
-        if a == b {
-            return a;
-        }
-        let zero = self.integer(0);
-        let taken = if a == zero { zero } else { self.call(Function::When, [margin, a]) };
-        let other = if b == zero { zero } else { self.call(Function::Unless, [margin, b]) };
-        self.sum(taken, other)
-    }
-
     /// A power: whole exponents by products, halves by a root, all others by logarithm and exponential function.
     fn power(&mut self, term: &Term, base: usize, exponent: &Term) -> Result<usize, Fault> {
         let by = self.of(exponent)?;
-        let Some(Number::Exact(value)) = self.number(by) else { return Ok(self.general_power(base, by)) };
+        let Some(Number::Exact(value)) = self.build.number(by) else {
+            return Ok(self.build.general_power(base, by));
+        };
         let double = &value + &value;
         let Some(halves) = double.is_integer().then(|| i32::try_from(double.to_integer()).ok()).flatten()
         else {
-            return Ok(self.general_power(base, by));
+            return Ok(self.build.general_power(base, by));
         };
         let (whole, has_root) = (halves.div_euclid(2), halves.rem_euclid(2) == 1);
         if whole.abs() > MOST_EXPONENT {
             let help = format!("write one from -{MOST_EXPONENT} to {MOST_EXPONENT}");
             return Err(fault(term, "the exponent of a power is too large", &help));
         }
-        let power = self.whole_power(base, whole);
+        let power = self.build.whole_power(base, whole);
         if !has_root {
             return Ok(power);
         }
-        if self.is_negative(base) {
+        if self.build.is_negative(base) {
             return Err(fault(term, "a negative number has no square root", "write a whole exponent"));
         }
-        let root = self.root(base);
-        Ok(self.product(power, root))
+        let root = self.build.root(base);
+        Ok(self.build.product(power, root))
     }
-
-    /// The square root; of a number it is one.
-    pub(super) fn root(&mut self, radicand: usize) -> usize {
-        match self.number(radicand) {
-            Some(Number::Exact(value)) if !value.is_negative() => self.exact(root(&value)),
-            _ => self.call(Function::Sqrt, [radicand; 2]),
-        }
-    }
-
-    pub(super) fn is_negative(&self, place: usize) -> bool {
-        matches!(self.number(place), Some(Number::Exact(value)) if value.is_negative())
-    }
-
-    fn whole_power(&mut self, base: usize, exponent: i32) -> usize {
-        let folded = self.number(base).and_then(|number| number.power(exponent)).filter(is_short);
-        match (folded, exponent) {
-            (Some(number), _) => self.push(Operation::Number(number)),
-            (None, 0) => self.integer(1),
-            (None, 1) => base,
-            (None, _) => self.push(Operation::Power(base, exponent)),
-        }
-    }
-
-    fn general_power(&mut self, base: usize, exponent: usize) -> usize {
-        let logarithm = self.call(Function::Ln, [base; 2]);
-        let scaled = self.product(exponent, logarithm);
-        self.call(Function::Exp, [scaled; 2])
-    }
-
-    /// The number at a place, if it is one that arithmetic with parameters can go on with.
-    fn number(&self, place: usize) -> Option<Number> {
-        match &self.operations[place] {
-            Operation::Number(Number::Input { .. }) => None,
-            Operation::Number(number) => Some(number.clone()),
-            _ => None,
-        }
-    }
-
-    fn is_zero(&self, place: usize) -> bool {
-        self.number(place).is_some_and(|number| number.is_zero())
-    }
-
-    /// An operation on numbers of the model file, done exactly.
-    fn folded(&mut self, a: usize, b: usize, of: impl Fn(Number, Number) -> Option<Number>) -> Option<usize> {
-        let number = of(self.number(a)?, self.number(b)?).filter(is_short)?;
-        Some(self.push(Operation::Number(number)))
-    }
-
-    fn push(&mut self, operation: Operation) -> usize {
-        let known = self.operations.iter().position(|known| *known == operation);
-        known.unwrap_or_else(|| {
-            self.operations.push(operation);
-            self.operations.len() - 1
-        })
-    }
-}
-
-fn is_short(number: &Number) -> bool {
-    match number {
-        Number::Exact(value) => in_range(value),
-        number => number.weight() <= MOST_WEIGHT,
-    }
-}
-
-/// The operations that the last of them needs.
-fn reachable(operations: &[Operation], last: usize) -> Vec<Operation> {
-    let mut is_needed = vec![false; operations.len()];
-    is_needed[last] = true;
-    for place in (0..=last).rev().filter(|&place| place <= last) {
-        if is_needed[place] {
-            operations[place].operands().for_each(|operand| is_needed[operand] = true);
-        }
-    }
-    let mut places = vec![0; operations.len()];
-    let mut kept = Vec::new();
-    for (place, operation) in operations.iter().enumerate().filter(|(place, _)| is_needed[*place]) {
-        places[place] = kept.len();
-        kept.push(operation.moved(|operand| places[operand]));
-    }
-    kept
 }
 
 fn constant(text: &str) -> Fault {
@@ -379,11 +268,6 @@ fn constant(text: &str) -> Fault {
         "name a column of a run's table: a joint coordinate, a rate (\"joint rate\"), or a number of an output".to_owned(),
     ];
     Fault { span: 0..text.len(), words }
-}
-
-pub(super) fn fault(term: &Term, message: &str, help: &str) -> Fault {
-    let words = [message, "here", help].map(str::to_owned);
-    Fault { span: term.span.clone(), words }
 }
 
 /// The formula of a text, of a model that has been read.

@@ -1,8 +1,8 @@
 //! The functions that formulas may call.
 
-use super::computed::Fault;
+use super::build::Build;
+use super::computed::{Fault, here};
 use super::expression::Term;
-use super::formulas::{Build, fault};
 use super::names;
 use crate::{Rational, parse_decimal};
 use gyro_program::elementary::Function;
@@ -39,13 +39,8 @@ const ALL: [(&str, &str); 25] = [
 /// ln 10.
 const LN_10: &str = "2.302585092994045684017991454684364207601101488";
 
-/// A call of a function.
-pub(super) fn call(
-    build: &mut Build<'_, '_>,
-    term: &Term,
-    name: &str,
-    operands: &[Term],
-) -> Result<usize, Fault> {
+/// Whether there is such a function, of so many operands.
+pub(super) fn check(term: &Term, name: &str, n_operands: usize) -> Result<(), Fault> {
     let Some((_, takes)) = ALL.iter().find(|(known, _)| *known == name) else {
         let known: Vec<&str> = ALL.iter().map(|(name, _)| *name).collect();
         let help = if name == "log" {
@@ -53,40 +48,24 @@ pub(super) fn call(
         } else {
             names::instead(name, &known)
         };
-        let Fault { span, words } = fault(term, &format!("there is no function `{name}`"), &help);
+        let Fault { span, words } = here(term, &format!("there is no function `{name}`"), &help);
         return Err(Fault { span: span.start..span.start + name.len(), words });
     };
     let length = takes.split(", ").count();
-    if operands.len() != length {
-        let message = format!("`{name}` takes {length} operands, and there are {}", operands.len());
-        return Err(fault(term, &message, &format!("write {name}({takes})")));
+    if n_operands != length {
+        let message = format!("`{name}` takes {length} operands, and there are {n_operands}");
+        return Err(here(term, &message, &format!("write {name}({takes})")));
     }
-    match (name, operands) {
-        ("if", [condition, a, b]) => {
-            let chosen = [build.of(a)?, build.of(b)?];
-            build.choice(condition, chosen)
-        }
-        ("not", _) => {
-            let help = "write if(condition, a, b), which is a where it holds and b elsewhere";
-            Err(fault(term, "a condition stands in place of a number", help))
-        }
-        _ => {
-            let places = operands.iter().map(|operand| build.of(operand)).collect::<Result<Vec<_>, _>>()?;
-            if name == "sqrt" && build.is_negative(places[0]) {
-                return Err(fault(
-                    &operands[0],
-                    "a negative number has no square root",
-                    "write a number of 0 or more",
-                ));
-            }
-            Ok(build.value(name, &places))
-        }
-    }
+    Ok(())
 }
 
-impl Build<'_, '_> {
-    /// The value of a function at operands of the right number.
-    fn value(&mut self, name: &str, operands: &[usize]) -> usize {
+/// The value of a function at operands of the right number.
+pub(super) fn value(build: &mut Build, name: &str, operands: &[usize]) -> usize {
+    build.function(name, operands)
+}
+
+impl Build {
+    fn function(&mut self, name: &str, operands: &[usize]) -> usize {
         match (name, operands) {
             ("tan", &[x]) => {
                 let [sin, cos] = [Function::Sin, Function::Cos].map(|function| self.call(function, [x; 2]));

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::computed::Fault;
 use super::formulas::{Inputs, Named};
-use super::numbers::{named, wrong_within};
+use super::lookup::{named, wrong_within};
 use super::reader::Reader;
 use super::section::Item;
 use super::seen::Known;

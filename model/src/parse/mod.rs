@@ -1,6 +1,7 @@
 //! The reader: from the text of a model file to a checked [`Model`], or to every mistake in it at once.
 
 mod bodies;
+mod build;
 mod computed;
 mod contacts;
 mod controllers;
@@ -16,6 +17,7 @@ mod joints;
 mod kinds;
 mod laws;
 mod lines;
+mod lookup;
 mod motion;
 mod named_formulas;
 mod names;

@@ -3,10 +3,10 @@
 use toml::de::DeValue;
 
 use super::formulas::Inputs;
-use super::numbers::{self, number, radians, turns};
+use super::numbers::{number, radians, turns};
 use super::reader::Reader;
 use super::section::{Item, Section, all, found};
-use super::{expression, laws, names, seen, table};
+use super::{expression, laws, lookup, names, seen, table};
 use crate::keys::{MOTION, SINUSOID};
 use crate::{Motion, Number, Operation, Seen};
 
@@ -43,7 +43,7 @@ pub(super) fn read(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
 /// Whether a text is a formula rather than a number: it names the time, or calls a function.
 fn moves(reader: &Reader<'_>, text: &str) -> bool {
     let Ok(term) = expression::parse(text) else { return false };
-    let is_time = |name: &&str| *name == "t" && numbers::named(reader, "t").is_none();
+    let is_time = |name: &&str| *name == "t" && lookup::named(reader, "t").is_none();
     term.names().iter().any(is_time) || term.calls().iter().any(|name| *name != "sqrt")
 }
 
@@ -63,7 +63,7 @@ fn in_time(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Motion
             _ => Motion::Formula(formula),
         }),
         Err(fault) => {
-            numbers::wrong_within(reader, item, text, fault);
+            lookup::wrong_within(reader, item, text, fault);
             None
         }
     }

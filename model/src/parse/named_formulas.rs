@@ -3,7 +3,8 @@
 use super::expression;
 use super::formulas::{self, Inputs};
 use super::laws;
-use super::numbers::{broken, wrong_within};
+use super::lookup::wrong_within;
+use super::numbers::broken;
 use super::reader::Reader;
 use super::section::{Item, Section};
 use super::{names, tables};

@@ -3,8 +3,9 @@
 use num_bigint::BigInt;
 use toml::de::DeValue;
 
-use super::computed::{self, Fault, Meaning};
+use super::computed::{self, Meaning};
 use super::expression::{self, Term};
+use super::lookup::{named, wrong_within};
 use super::reader::Reader;
 use super::section::{Item, Section, all, found};
 use super::{laws, names, units};
@@ -248,13 +249,6 @@ fn reference(reader: &mut Reader<'_>, item: Item<'_>, text: &str, allowed: Names
     None
 }
 
-/// What the model file calls by a name.
-pub(super) fn named(reader: &Reader<'_>, name: &str) -> Option<Number> {
-    let parameter = reader.parameters.iter().position(|p| p == name);
-    let derived = || reader.derived.iter().find(|(p, _)| p == name).map(|(_, number)| number.clone());
-    parameter.map(|index| Number::Parameter { index, negated: false }).or_else(derived)
-}
-
 fn names_parameter(reader: &Reader<'_>, name: &str) -> bool {
     named(reader, name).is_some()
 }
@@ -309,12 +303,6 @@ pub(super) fn computed(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> O
             None
         }
     }
-}
-
-/// Reports what is wrong with a part of an expression.
-pub(super) fn wrong_within(reader: &mut Reader<'_>, item: Item<'_>, text: &str, fault: Fault) {
-    let span = reader.within(&item.span(), text, &fault.span);
-    reader.wrong(item.place, span, fault.words);
 }
 
 /// Reports a string that is no expression: a number with a unit, or one that breaks off at a place.

@@ -45,7 +45,7 @@ const STAGES: [(&str, &str); 5] = [
     ),
     (
         "gyro-sim",
-        "fused spline scalar charts sine floats admissible apart wire euler_parameters contract integrate violation turns \
+        "wire fused spline scalar charts sine floats admissible apart euler_parameters contract integrate violation turns \
          pivoting dual correct solver events contact generated joint_partition lanes sampled",
     ),
     (

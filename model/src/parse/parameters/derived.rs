@@ -2,8 +2,9 @@
 
 use super::{Entry, VALUE, name};
 use crate::parse::expression::{self, Term};
+use crate::parse::lookup::named;
 use crate::parse::names;
-use crate::parse::numbers::{computed, named};
+use crate::parse::numbers::computed;
 use crate::parse::reader::Reader;
 use crate::parse::section::Item;
 use crate::validate::{Owner, Place};
