@@ -55,16 +55,17 @@ fn joint_rows(system: &mut System, index: usize) -> Vec<ExprId> {
 
 /// `second − ratio · first − offset`, or the second coordinate less a formula of others.
 fn coupled(system: &mut System, coupler: &Coupler) -> ExprId {
-    let second = joint_coordinate::value(system, coupler.second);
     let (first, ratio, offset) = match &coupler.by {
         Coupling::Linear { first, ratio, offset } => (*first, ratio, offset),
         Coupling::Formula(formula) => {
+            let second = joint_coordinate::value(system, coupler.second);
             let wanted =
                 laws::value(system, formula, |system, seen| laws::see(system, &OfBodies, None, seen));
             return system.graph.sub(second, wanted);
         }
     };
-    let first = joint_coordinate::value(system, first);
+    let (first, second) =
+        (joint_coordinate::value(system, first), joint_coordinate::value(system, coupler.second));
     let [ratio, offset] = [ratio, offset].map(|number| system.number(number));
     let driven = system.graph.mul(ratio, first);
     let lag = system.graph.sub(second, driven);

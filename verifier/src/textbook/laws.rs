@@ -98,7 +98,7 @@ impl<F: Field> Evaluation<'_, F> {
     fn early(&self, output: usize, number: usize) -> Option<F> {
         let model = self.textbook.model;
         match &model.outputs[output].kind {
-            OutputKind::Inertial(frame) => {
+            OutputKind::Inertial(frame) if number >= 3 => {
                 let w = self.by_axes(frame, &self.moving[frame.body].w)?;
                 Some(w.0[number - 3].value.clone())
             }
@@ -109,7 +109,10 @@ impl<F: Field> Evaluation<'_, F> {
                 let line = to - from;
                 self.scope.sqrt(&line.dot(&line)).map(|length| length.value)
             }
-            kind => self.output(kind, &[], &[])?.get(number).cloned(),
+            kind @ (OutputKind::Pose(_) | OutputKind::Velocity(_)) => {
+                self.output(kind, &[], &[])?.get(number).cloned()
+            }
+            _ => None,
         }
     }
 }
@@ -124,8 +127,12 @@ impl Evaluation<'_, f64> {
         of_forces.chain(of_outputs).all(|formula| {
             let see = |by: Seen| {
                 let see = |seen| {
+                    let known = match seen {
+                        Seen::Output { output, number } => self.early(output, number),
+                        seen => self.sight(seen).map(|jet| jet.value),
+                    };
                     // Lengths, accelerations and multipliers are looked at where they come from.
-                    let value = self.sight(seen).map_or(1.0, |jet| jet.value);
+                    let value = known.unwrap_or(1.0);
                     Some(if seen == by { Jet::moving(value, 1.0) } else { Jet::constant(value) })
                 };
                 self.read(&formula.text, &see)
