@@ -7,6 +7,9 @@ use crate::field::Field;
 use gyro_model::{ForceKind, JointCoordinate, Number, OutputKind, Seen};
 use std::cell::RefCell;
 
+/// A coordinate or a rate is zero but for rounding if it is smaller, rad or m.
+const ROUNDED: f64 = 1e-12;
+
 /// A formula with its derivatives.
 pub(super) struct Slopes<F> {
     pub(super) value: Jet<F>,
@@ -133,6 +136,8 @@ impl Evaluation<'_, f64> {
                     };
                     // Lengths, accelerations and multipliers are looked at where they come from.
                     let value = known.unwrap_or(1.0);
+                    // What a joint state has as zero, the state of the bodies has to rounding.
+                    let value = if value.abs() < ROUNDED { 0.0 } else { value };
                     Some(if seen == by { Jet::moving(value, 1.0) } else { Jet::constant(value) })
                 };
                 self.read(&formula.text, &see)
