@@ -23,6 +23,8 @@ pub(super) fn couplers(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Coupl
             return Coupler { name, second, by: by_formula(reader, &section, second) };
         }
         let first = end(Side::First);
+        // With a formula neither may be there.
+        section.require(reader, "first");
         section.require(reader, "ratio");
         let [ratio, offset] = ["ratio", "offset"].map(|key| section.number(reader, key));
         Coupler { name, second, by: Coupling::Linear { first, ratio, offset } }

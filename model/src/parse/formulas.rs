@@ -138,6 +138,18 @@ impl Reading<'_, '_> {
                     let help = "write a number of 0 or more";
                     return Err(fault(&operands[0], "a negative number has no square root", help));
                 }
+                let divisor = match name {
+                    "mod" if self.build.is_zero(places[1]) => Some(&operands[1]),
+                    "step" if places[1] == places[3] => Some(&operands[3]),
+                    _ => None,
+                };
+                if let Some(divisor) = divisor {
+                    let help = match name {
+                        "mod" => "write a divisor other than 0",
+                        _ => "write another place for the end of the step than for its beginning",
+                    };
+                    return Err(fault(divisor, "a formula divides by zero", help));
+                }
                 Ok(functions::value(&mut self.build, name, &places))
             }
         }
