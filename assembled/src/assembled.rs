@@ -174,7 +174,7 @@ impl<T: Number, S: Solver<T>> Assembled<T, S> {
             let power = lowered.power(at, lambda_nu, &dy[n_q..n_q + n_v]);
             dy[work] = power.non_conservative + power.drivers;
         }
-        lowered.turn_rates(at, &mut dy[lowered.first_turn()..]);
+        lowered.other_rates(at, &mut dy[lowered.first_of_others()..]);
     }
 }
 

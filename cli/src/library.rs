@@ -15,7 +15,7 @@ use crate::{Cli, Command, batches, files, json, linearization, remarks, simulate
 use clap::{CommandFactory, Parser};
 use gyro_codegen::{Effort, Functions};
 use gyro_jit::{Compiled, Library, Sizes};
-use gyro_model::Model;
+use gyro_model::{Model, OutputKind};
 use gyro_runner::motion::Linear;
 use gyro_runner::{Event, JointSample, Start};
 use gyro_sim::JointPlace;
@@ -198,6 +198,12 @@ impl Run {
                     let (position, rate) = columns::scalar(&sample.coordinates[at]);
                     x.push(position);
                     u.extend((place.n_rates() == 1).then_some(rate));
+                }
+                JointPlace::State { state } => {
+                    let is_it = |kind: &OutputKind| matches!(kind, OutputKind::State { state: of } if *of == usize::from(state));
+                    let before = model.outputs.iter().take_while(|output| !is_it(&output.kind));
+                    let at: usize = before.map(|output| output.kind.columns().len()).sum();
+                    x.push(*sample.outputs.get(at)?);
                 }
                 JointPlace::Orientation { joint } => {
                     let own = |shown: &Shown| shown.joint == usize::from(joint) && shown.is_orientation();

@@ -29,6 +29,7 @@ fn name(model: &Model, element: &Element) -> String {
             let shown = own.nth(coordinate.into()).expect("a joint has the coordinates of its states");
             format!("{}{what}", shown.name)
         }
+        JointPlace::State { state } => model.states[usize::from(state)].name.clone(),
         JointPlace::Orientation { joint } => {
             format!("{}{what}.{component}", model.joints[usize::from(joint)].name)
         }

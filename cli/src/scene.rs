@@ -248,6 +248,7 @@ pub(crate) fn start(model: &Model, assembled: &gyro_model::Start) -> Start {
     Start {
         positions: assembled.q.clone(),
         velocities: assembled.v.clone(),
+        states: assembled.states.clone(),
         turn_references: model
             .turn_references()
             .into_iter()

@@ -254,6 +254,7 @@ fn equations<'m>(
     start: &Start,
 ) -> Equations<'m> {
     let mut system = System::with_effort(model, effort);
+    system.graph.domains.set_states(&start.states);
     let textbook = Textbook::derive(&mut system);
     let functions = &functions.clone().of_mechanism(facts(&system));
     // Accelerations at any state are a form of those at corrected states, too.
@@ -300,6 +301,7 @@ fn facts(system: &System) -> Facts {
         | OutputKind::Link { .. }
         // What a formula sees is an output of its own.
         | OutputKind::Formula(_)
+        | OutputKind::State { .. }
         | OutputKind::Energy => false,
     };
     let tells_multipliers = |output: &Output| {

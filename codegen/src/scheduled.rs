@@ -120,6 +120,7 @@ pub enum JointPlace {
     Orientation { joint: usize },
     Body { body: usize },
     Turn { joint: usize, coordinate: usize },
+    State { state: usize },
 }
 
 /// What there is in joint coordinates.
@@ -326,7 +327,8 @@ fn start(model: &Model, start: &Start) -> Vec<f64> {
     let work = model.has_work().then_some(0.0);
     let turns = model.turn_references();
     let turns = turns.iter().map(|turn| start.joints[turn.joint].position[turn.coordinate]);
-    start.q.iter().chain(&start.v).copied().chain(work).chain(turns).collect()
+    let states = start.states.iter().copied();
+    start.q.iter().chain(&start.v).copied().chain(work).chain(states).chain(turns).collect()
 }
 
 /// What stands where in a joint state.
@@ -352,6 +354,8 @@ fn places(model: &Model, space: &JointSpace) -> Vec<JointPlace> {
     for &(JointCoordinate { joint, coordinate }, x) in &space.layout.turns {
         places.push((x, JointPlace::Turn { joint, coordinate }));
     }
+    let states = space.layout.states().enumerate();
+    places.extend(states.map(|(state, x)| (x, JointPlace::State { state })));
     places.sort_by_key(|(x, _)| *x);
     places.into_iter().map(|(_, place)| place).collect()
 }

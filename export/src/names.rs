@@ -16,6 +16,8 @@ pub(crate) struct Names<'a> {
     /// Of those that have coordinates.
     pub(crate) bodies: Vec<&'a str>,
     n_coordinates: usize,
+    /// Where in the maximal state the model file's own states begin, and turn references.
+    first_state: usize,
     first_turn: usize,
 }
 
@@ -31,7 +33,8 @@ impl<'a> Names<'a> {
             constants: Vec::new(),
             bodies: bodies.collect(),
             n_coordinates: counts.coordinates,
-            first_turn: 13 * counts.bodies + counts.work,
+            first_state: 13 * counts.bodies + counts.work,
+            first_turn: 13 * counts.bodies + counts.work + counts.states,
         };
         for index in names.indices {
             let first = names.upper(&format!("{}_{}", index.kind, within_kind(index)));
@@ -96,6 +99,7 @@ impl<'a> Names<'a> {
                 let place = place - first_velocity;
                 format!("{}_{}", self.bodies[place / 6], VELOCITY[place % 6])
             }
+            Argument::State if place < self.first_turn => format!("state{}", place - self.first_state),
             Argument::State => format!("turn{}", place - self.first_turn),
             Argument::Joints if place < self.n_coordinates => format!("x{place}"),
             Argument::Joints => format!("u{}", place - self.n_coordinates),

@@ -338,6 +338,8 @@ impl<'a> Writer<'a> {
             JointPlace::Orientation { .. } => "GYRO_PLACE_ORIENTATION",
             JointPlace::Body { .. } => "GYRO_PLACE_BODY",
             JointPlace::Turn { .. } => "GYRO_PLACE_ANGLE",
+            // It is never closed.
+            JointPlace::State { .. } => "GYRO_PLACE_LENGTH",
         });
         places.collect::<Vec<_>>().join(", ")
     }

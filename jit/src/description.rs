@@ -61,6 +61,7 @@ impl OwnedLayout {
             gyro_codegen::JointPlace::Turn { joint, coordinate } => {
                 JointPlace::Turn { joint: narrow(joint), coordinate: narrow(coordinate) }
             }
+            gyro_codegen::JointPlace::State { state } => JointPlace::State { state: narrow(state) },
             gyro_codegen::JointPlace::Body { body } => JointPlace::Body { body: narrow(body) },
         };
         let places = Places {

@@ -356,6 +356,11 @@ pub enum OutputKind {
     },
     /// The value of a formula.
     Formula(Formula),
+    /// A state of one's own.
+    State {
+        /// Index into [`crate::Model::states`].
+        state: usize,
+    },
     /// Kinetic and potential energy, J.
     Energy,
     /// Power of all non-conservative forces, and of drivers and driven bodies, W.
@@ -429,7 +434,7 @@ impl OutputKind {
             Self::Driver { .. } | Self::Coupler { .. } => &[("", "N*m or N")],
             Self::Spring { .. } => &[("force", "N*m or N"), ("deflection", "rad or m")],
             Self::Link { .. } => &[("force", "N"), ("length", "m")],
-            Self::Formula(_) => &[("", "1")],
+            Self::Formula(_) | Self::State { .. } => &[("", "1")],
             Self::Energy => &[("kinetic", "J"), ("potential", "J")],
             Self::Power => &[("non_conservative", "W"), ("drivers", "W")],
         }

@@ -31,6 +31,7 @@ mod shape;
 mod sight;
 mod spatial;
 mod spline;
+mod state;
 mod tree;
 mod validate;
 
@@ -54,6 +55,7 @@ pub use redundancy::{Analysis, analyse};
 pub use shape::{Shape, ShapeKind};
 pub use spatial::{Quaternion, Vector, unit_vector};
 pub use spline::Spline;
+pub use state::{State, StateStart};
 pub use tree::{Attachment, Link, Tree};
 pub use validate::{ParameterRule, is_inertia};
 
@@ -87,7 +89,9 @@ pub struct Model {
     pub forces: Vec<Force>,
     /// Formulas that have a name. Wherever the model file names one, its operations stand in the model.
     pub formulas: Vec<(String, Formula)>,
-    /// What is to be computed besides the motion.
+    /// Quantities that a differential equation of first order tells, with the motion: see [`State`].
+    pub states: Vec<State>,
+    /// What is to be computed besides the motion: last, one output for each of the states.
     pub outputs: Vec<Output>,
     /// Sampled controllers, which runs close loops with; generated code knows nothing of them.
     pub controllers: Vec<Controller>,

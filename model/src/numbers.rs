@@ -1,6 +1,6 @@
 //! All numbers of a model.
 
-use crate::{Coupling, Formula, Model, Motion, Number, Shape, ShapeKind};
+use crate::{Coupling, Formula, Model, Motion, Number, Shape, ShapeKind, StateStart};
 
 impl Model {
     /// Every number of the model file that stands in the model, those of the start included.
@@ -43,6 +43,13 @@ impl Model {
         }
         let formulas = self.outputs.iter().filter_map(|output| output.kind.formula());
         numbers.extend(formulas.flat_map(Formula::numbers));
+        for state in &self.states {
+            if let StateStart::At(start) = &state.start {
+                numbers.push(start);
+            }
+            numbers.push(&state.rate);
+            numbers.extend(state.rate.formula().into_iter().flat_map(Formula::numbers));
+        }
         self.controllers.iter().for_each(|controller| numbers.extend(controller.numbers()));
         for event in &self.events {
             numbers.push(&event.level);

@@ -160,12 +160,17 @@ impl Model {
         if self.coordinate_kind(coordinate).is_angle() { RowUnit::Pure } else { RowUnit::Length }
     }
 
-    /// What formulas of forces and outputs ask of joint coordinates.
-    fn uses_of_formulas(&self) -> impl Iterator<Item = (JointCoordinate, CoordinateUse)> {
+    /// The formulas of forces, states and outputs: those that are part of the equations.
+    pub fn laws(&self) -> impl Iterator<Item = &Formula> {
         let numbers = self.forces.iter().flat_map(|force| force.kind.parts().numbers);
-        let formulas = numbers.flat_map(|(_, numbers)| numbers).filter_map(Number::formula);
+        let forces = numbers.flat_map(|(_, numbers)| numbers).filter_map(Number::formula);
         let outputs = self.outputs.iter().filter_map(|output| output.kind.formula());
-        formulas.chain(outputs).flat_map(Formula::uses)
+        forces.chain(outputs).chain(self.states.iter().filter_map(|state| state.rate.formula()))
+    }
+
+    /// What they ask of joint coordinates.
+    fn uses_of_formulas(&self) -> impl Iterator<Item = (JointCoordinate, CoordinateUse)> {
+        self.laws().flat_map(Formula::uses)
     }
 
     /// The rows of one joint, coupler, driver or body among [`Model::rows`].

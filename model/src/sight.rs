@@ -27,14 +27,17 @@ impl Sight {
         self.formula.uses().map(|(on, _)| on)
     }
 
-    /// The value, given joint coordinates and the time.
+    /// The value, given joint coordinates and the time, of a formula that sees nothing else: of constraints.
     pub(crate) fn value<D: Scalar>(&self, coordinate: impl Fn(JointCoordinate) -> D, t: D) -> D {
+        self.of(|seen| if let Seen::Coordinate(on) = seen { coordinate(on) } else { t })
+    }
+
+    /// The value, given all that it sees.
+    pub(crate) fn of<D: Scalar>(&self, see: impl Fn(Seen) -> D) -> D {
         let value = self.formula.value(|operation, values: &[D]| {
             Ok::<_, Infallible>(match operation {
                 Operation::Number(_) => D::from(self.numbers[values.len()]),
-                Operation::Seen(Seen::Coordinate(on)) => coordinate(*on),
-                // The reader allows nothing else where formulas are constraints.
-                Operation::Seen(_) => t,
+                Operation::Seen(seen) => see(*seen),
                 Operation::Negative(a) => -values[*a],
                 Operation::Sum(a, b) => values[*a] + values[*b],
                 Operation::Difference(a, b) => values[*a] - values[*b],

@@ -11,6 +11,8 @@ pub struct Counts {
     pub rows: usize,
     /// One if the state carries the work of non-conservative forces.
     pub work: usize,
+    /// States of one's own.
+    pub states: usize,
     /// Angles whose turns are counted.
     pub turns: usize,
     /// Numbers that are read off joints.
@@ -75,7 +77,7 @@ struct Row(Space, &'static str, Group, fn(&Counts) -> usize);
 /// All types, a row for each variant of [`Space`] in the same order.
 #[rustfmt::skip]
 const TABLE: &[Row] = &[
-    Row(Space::State, "State", Group::Mechanism, |n| 13 * n.bodies + n.work + n.turns),
+    Row(Space::State, "State", Group::Mechanism, |n| 13 * n.bodies + n.work + n.states + n.turns),
     Row(Space::Rows, "Rows", Group::Mechanism, |n| n.rows),
     Row(Space::Constraints, "Constraints", Group::Mechanism, |n| n.rows + n.bodies),
     Row(Space::Velocities, "Velocities", Group::Mechanism, |n| 6 * n.bodies),

@@ -96,8 +96,8 @@ impl Dynamics {
         for (element, value) in y[..known].iter_mut().zip(start.positions.iter().chain(&start.velocities)) {
             *element = *value;
         }
-        let references = y.len() - start.turn_references.len();
-        y[references..].copy_from_slice(&start.turn_references);
+        let others = y.len() - start.n_others();
+        y[others..].iter_mut().zip(start.others()).for_each(|(element, value)| *element = value);
         let mut x = joints_near(&self.mechanism, 0.0, &y, &start.angles);
         x.truncate(self.n_x + self.n_u);
         x
@@ -139,6 +139,7 @@ pub(crate) fn names(mechanism: &Compiled<f64>, model: &Model) -> (Vec<String>, V
                 }
                 x.push(name);
             }
+            JointPlace::State { state } => x.push(model.states[usize::from(state)].name.clone()),
             JointPlace::Orientation { joint } => {
                 let name = &model.joints[usize::from(joint)].name;
                 x.extend(numbered(name, &PARAMETERS));

@@ -149,7 +149,7 @@ fn element<M: Mechanism>(mechanism: &M, index: usize) -> String {
         let k = index - positions;
         (k / 6, if k % 6 < 3 { "velocity" } else { "angular velocity" })
     } else {
-        return "the work done, the count of a joint's turns or the formula of an event".to_owned();
+        return "the work done, a state of the model file's own, the count of a joint's turns or the formula of an event".to_owned();
     };
     format!("the {what} of body `{}`", mechanism.description().bodies[body])
 }
@@ -171,6 +171,7 @@ fn joint_element<M: Mechanism>(mechanism: &M, layout: &JointLayout<'_>, index: u
         Some((JointPlace::Body { body }, what)) => {
             format!("the {what} of {}", name(mechanism, Owner::Body(*body)))
         }
+        Some((JointPlace::State { .. }, _)) => "a state of the model file's own".to_owned(),
         None => "the work done".to_owned(),
     }
 }

@@ -41,6 +41,8 @@ pub struct Start {
     pub positions: Vec<f64>,
     /// `(s, w')` of each body with coordinates.
     pub velocities: Vec<f64>,
+    /// The model file's own states.
+    pub states: Vec<f64>,
     /// The mechanism's turn references: the last elements of its state.
     pub turn_references: Vec<f64>,
     /// For each coordinate, joint after joint, the angle that its continuous angle starts nearest to, rad; anything for
@@ -60,6 +62,18 @@ pub struct Start {
     pub watches: Vec<Watch>,
     /// Rigid stops and friction that sticks, at most [`Touch::MOST`].
     pub contacts: Vec<Touch>,
+}
+
+impl Start {
+    /// The last elements of the state: the model file's own states, then turn references.
+    pub fn others(&self) -> impl Iterator<Item = f64> {
+        self.states.iter().chain(&self.turn_references).copied()
+    }
+
+    /// How many these are.
+    pub fn n_others(&self) -> usize {
+        self.states.len() + self.turn_references.len()
+    }
 }
 
 /// What a run has to tell.

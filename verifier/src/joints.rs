@@ -46,6 +46,8 @@ pub enum Freedom {
     },
     /// The turn reference of an angle, which is none of the coordinates.
     Turn(JointCoordinate),
+    /// A state of one's own, by its index in [`Model::states`].
+    State(usize),
 }
 
 impl Freedom {
@@ -55,6 +57,7 @@ impl Freedom {
         match self {
             Self::Scalar(on) => kind(on.joint).is_some_and(|kind| on.coordinate < kind.coordinates().len()),
             Self::Turn(on) => model.turn_references().contains(&on),
+            Self::State(state) => state < model.states.len(),
             Self::Orientation { joint } => {
                 matches!(kind(joint), Some(JointKind::Spherical | JointKind::PointOnLine))
             }
@@ -66,7 +69,7 @@ impl Freedom {
     pub fn sizes(self) -> (usize, usize) {
         match self {
             Self::Scalar(_) => (1, 1),
-            Self::Turn(_) => (1, 0),
+            Self::Turn(_) | Self::State(_) => (1, 0),
             Self::Orientation { .. } => (4, 3),
             Self::Body { .. } => (7, 6),
         }
@@ -75,7 +78,7 @@ impl Freedom {
     /// Where among its coordinates Euler parameters start, if there are any.
     pub fn euler(self) -> Option<usize> {
         match self {
-            Self::Scalar(_) | Self::Turn(_) => None,
+            Self::Scalar(_) | Self::Turn(_) | Self::State(_) => None,
             Self::Orientation { .. } => Some(0),
             Self::Body { .. } => Some(3),
         }
@@ -104,6 +107,10 @@ impl JointLayout {
                 return Err(format!("{freedom:?} is there twice"));
             }
             layout.add(*freedom);
+        }
+        let missing = (0..model.states.len()).find(|&state| layout.state(state).is_none());
+        if let Some(state) = missing {
+            return Err(format!("state `{}` is not there", model.states[state].name));
         }
         let rows = &layout.closure_rows;
         if !rows.is_sorted_by(|a, b| a < b) || rows.last().is_some_and(|&last| last >= n_rows) {
@@ -142,6 +149,11 @@ impl JointLayout {
     /// Where a turn reference stands.
     pub fn turn(&self, on: JointCoordinate) -> Option<usize> {
         self.places.iter().find(|place| place.of == Freedom::Turn(on)).map(|place| place.x)
+    }
+
+    /// Where a state of one's own stands.
+    pub fn state(&self, state: usize) -> Option<usize> {
+        self.places.iter().find(|place| place.of == Freedom::State(state)).map(|place| place.x)
     }
 
     /// Where a scalar coordinate stands.

@@ -115,6 +115,7 @@ pub(crate) fn counts(model: &Model, joints: Option<&JointLayout>) -> Counts {
         bodies: model.coordinate_bodies().len(),
         rows: model.rows().len(),
         work: usize::from(model.has_work()),
+        states: model.states.len(),
         turns: model.turn_references().len(),
         readings: skeleton::n_readings(model),
         outputs: model.outputs.iter().map(|output| output.kind.columns().len()).sum(),

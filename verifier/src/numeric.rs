@@ -39,7 +39,8 @@ fn start_differs(model: &Model, module: &Module) -> Option<String> {
     let turns = model.turn_references();
     let turns = turns.iter().map(|turn| start.joints[turn.joint].position[turn.coordinate]);
     let work = model.has_work().then_some(0.0);
-    let expected = start.q.iter().chain(&start.v).copied().chain(work).chain(turns);
+    let moving = start.q.iter().chain(&start.v).copied().chain(work);
+    let expected = moving.chain(start.states.iter().copied()).chain(turns);
     let place = expected.zip(&module.start).position(|(expected, found)| expected != *found);
     place.map(|place| format!("element {place} of the start is not what the model assembles"))
 }
@@ -103,6 +104,7 @@ fn joint_start_differs(model: &Model, module: &Module) -> Option<String> {
             let expected = assembled.joints[on.joint].position[on.coordinate];
             is_near(module.joint_start[place.x], expected, largest(&[expected]))
         }
+        Freedom::State(state) => module.joint_start[place.x] == assembled.states[state],
         Freedom::Orientation { .. } | Freedom::Body { .. } => true,
     });
     // An angle that others determine is assembled in `f64`: after many turns it is known less well.

@@ -12,7 +12,7 @@ pub struct Point<F: Field> {
     /// Time.
     pub t: F,
     /// State: 7 positions (r, p) of each body that has coordinates, with |p| = 1 unless said otherwise; 6 velocities
-    /// (s, w') of each; the work if [`Model::has_work`]; one turn reference for each of [`Model::turn_references`].
+    /// (s, w') of each; the work if [`Model::has_work`]; [`Model::states`]; one turn reference for each of [`Model::turn_references`].
     pub state: Vec<F>,
     /// Values of [`Model::parameters`].
     pub parameters: Vec<F>,
@@ -78,9 +78,18 @@ impl<F: Field> Point<F> {
         &self.state[start..start + 6]
     }
 
+    /// A state of one's own, at a place of [`Model::states`].
+    pub fn own_state(&self, model: &Model, place: usize) -> &F {
+        &self.state[first_state(model) + place]
+    }
+
     /// The turn reference at a place of [`Model::turn_references`].
     pub fn turn_reference(&self, model: &Model, place: usize) -> &F {
-        let work = usize::from(model.has_work());
-        &self.state[13 * model.coordinate_bodies().len() + work + place]
+        &self.state[first_state(model) + model.states.len() + place]
     }
+}
+
+/// Where [`Model::states`] begin in the state.
+pub(crate) fn first_state(model: &Model) -> usize {
+    13 * model.coordinate_bodies().len() + usize::from(model.has_work())
 }

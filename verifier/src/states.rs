@@ -5,7 +5,7 @@ use crate::field::Field;
 use crate::interpreter::{self, Given};
 use crate::joints::{Freedom, JointLayout};
 use crate::module::Module;
-use crate::point::Point;
+use crate::point::{Point, first_state};
 use crate::seed::Seed;
 use chacha20::ChaCha8Rng;
 use gyro_model::{Model, to_f64};
@@ -127,8 +127,9 @@ fn torn(model: &Model, start: &[f64], random: &mut ChaCha8Rng) -> Vec<Place> {
 /// A state of numbers between −1 and 1 with |p| = 1 to rounding.
 pub fn random_state(model: &Model, random: &mut ChaCha8Rng) -> Vec<f64> {
     let n = model.coordinate_bodies().len();
-    let rest = 6 * n + usize::from(model.has_work()) + model.turn_references().len();
-    let mut state: Vec<f64> = (0..7 * n + rest).map(|_| random.random_range(-1.0..1.0)).collect();
+    let mut state: Vec<f64> = (0..first_state(model) + model.states.len() + model.turn_references().len())
+        .map(|_| random.random_range(-1.0..1.0))
+        .collect();
     for position in state[..7 * n].chunks_mut(7) {
         let length = position[3..].iter().map(|e| e * e).sum::<f64>().sqrt();
         position[3..].iter_mut().for_each(|e| *e /= length);

@@ -6,6 +6,7 @@ use crate::model::path::Path;
 use crate::model::place::{Moment, Places, vector};
 use crate::model::scene::Scene;
 use crate::model::spot::Spot;
+use crate::model::states::first_state;
 use crate::number::{Number, call, if_positive, number};
 use gyro_model::{ForceKind, Formula, Model, Number as PageNumber, Operation, OutputKind, Seen};
 use gyro_program::elementary::Function;
@@ -38,6 +39,8 @@ pub(crate) enum Leaf<T> {
     Length,
     /// The rate of that.
     LengthRate,
+    /// An element of the state: one of the model file's own.
+    State(usize),
     /// A number among those of all outputs.
     Output(usize),
 }
@@ -138,6 +141,7 @@ impl<T: Number> Leaf<T> {
                     }
                     _ => unreachable!("the output is one of a link"),
                 },
+                OutputKind::State { state } => Self::State(first_state(model) + state),
                 _ => {
                     let before = model.outputs[..output].iter().map(|output| output.kind.columns().len());
                     Self::Output(before.sum::<usize>() + number)
@@ -158,6 +162,7 @@ impl<T: Number> Leaf<T> {
             }
             Self::Pose(spot, number) => spot.pose(&scene.motion(at, &spot.place))[*number],
             Self::Velocity(spot, number) => spot.velocity(&scene.motion(at, &spot.place))[*number],
+            Self::State(place) => at.y[*place],
             Self::Length => now.line[0],
             Self::LengthRate => now.line[1],
             Self::Output(place) => now.outputs.get(*place).copied().unwrap_or_else(T::zero),

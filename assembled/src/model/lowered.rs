@@ -1,5 +1,6 @@
 //! A model lowered to floating-point numbers: joint frames normalised, fixed bodies folded to constant poses.
 
+use crate::model::amount::Amount;
 use crate::model::forces::Element;
 use crate::model::joint::Joint;
 use crate::model::outputs::Output;
@@ -7,6 +8,7 @@ use crate::model::place::Places;
 use crate::model::rotor::Rotor;
 use crate::model::rows::Row;
 use crate::model::scene::Scene;
+use crate::model::states::first_state;
 use crate::number::{Number, number};
 use gyro_model::{AssemblyError, JointCoordinate, Model, RowOwner, RowUnit};
 use gyro_sim::{Owner, RowInfo};
@@ -27,6 +29,8 @@ pub struct Lowered<T: Number> {
     pub(crate) is_driven: bool,
     /// Where the work is in the state.
     pub(crate) work: Option<usize>,
+    /// The rates of the model file's own states, which follow in the state.
+    pub(crate) states: Vec<Amount<T>>,
     /// The angles whose turn references follow in the state: joint and coordinate.
     pub(crate) turns: Vec<JointCoordinate>,
     /// Where these angles are among the readings.
@@ -39,7 +43,7 @@ impl<T: Number> Lowered<T> {
         let (moving_bodies, places) = (model.coordinate_bodies(), Places::new(model));
         let work = model.has_work().then_some(13 * moving_bodies.len());
         let turns = model.turn_references();
-        let first_turn = 13 * moving_bodies.len() + usize::from(work.is_some());
+        let first_turn = first_state(model) + model.states.len();
         let reference = |of| turns.iter().position(|&turn| turn == of).map(|index| first_turn + index);
         let scene = Scene::new(model, &places, reference);
         let rows = model.rows();
@@ -53,6 +57,11 @@ impl<T: Number> Lowered<T> {
                 .outputs
                 .iter()
                 .map(|output| Output::new(model, (&places, &scene.joints), output))
+                .collect(),
+            states: model
+                .states
+                .iter()
+                .map(|state| Amount::new(model, (&places, &scene.joints), &state.rate))
                 .collect(),
             size: number(model.size()),
             is_driven: model.is_driven(),
@@ -101,10 +110,11 @@ fn reading<T>(joints: &[Joint<T>], of: &JointCoordinate) -> u16 {
     before.chain(own).map(|reading| reading.n_readings() as u16).sum()
 }
 
-/// Positions, velocities, the work where there is any, and the turn references.
+/// Positions, velocities, the work where there is any, the model file's own states, and the turn references.
 fn start<T: Number>(model: &Model, turns: &[JointCoordinate]) -> Result<Vec<T>, AssemblyError> {
     let start = model.assemble()?;
     let work = model.has_work().then_some(0.0);
     let turns = turns.iter().map(|turn| start.joints[turn.joint].position[turn.coordinate]);
-    Ok(start.q.into_iter().chain(start.v).chain(work).chain(turns).map(number).collect())
+    let moving = start.q.into_iter().chain(start.v).chain(work);
+    Ok(moving.chain(start.states).chain(turns).map(number).collect())
 }

@@ -25,6 +25,6 @@ pub(crate) mod rounding;
 pub(crate) mod rows;
 pub(crate) mod scene;
 pub(crate) mod spot;
+pub(crate) mod states;
 pub(crate) mod textbook;
 pub(crate) mod tracked;
-pub(crate) mod turns;

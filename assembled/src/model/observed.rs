@@ -68,6 +68,7 @@ impl<T: Number> Lowered<T> {
                 out[1] = if elastic.is_link { x } else { deflection };
             }
             Quantity::Load(row) => out[0] = row.map_or(T::zero(), |row| -solution.lambda[row]),
+            Quantity::State(place) => out[0] = at.y[*place],
             Quantity::Formula(_) => out[0] = T::zero(),
             Quantity::Energy => {
                 let energy = self.energy(at);

@@ -6,6 +6,7 @@ use crate::model::measure::Coordinate;
 use crate::model::path::Path;
 use crate::model::place::{Places, vector};
 use crate::model::spot::Spot;
+use crate::model::states::first_state;
 use crate::number::Number;
 use gyro_model::{BodyFrame, ForceKind, Model, OutputKind, RowOwner};
 
@@ -29,6 +30,8 @@ pub(crate) enum Quantity<T> {
     Load(Option<usize>),
     /// A spring along its coordinate, or a link along its line.
     Elastic(Elastic<T>),
+    /// An element of the state.
+    State(usize),
     /// A formula, which may see other outputs.
     Formula(Amount<T>),
     Energy,
@@ -111,6 +114,7 @@ impl<T: Number> Output<T> {
             OutputKind::Spring { force } | OutputKind::Link { force } => {
                 Quantity::Elastic(Elastic::new(model, (places, joints), &model.forces[*force].kind))
             }
+            OutputKind::State { state } => Quantity::State(first_state(model) + state),
             OutputKind::Formula(formula) => {
                 let number = gyro_model::Number::Formula(formula.clone().into());
                 Quantity::Formula(Amount::new(model, (places, joints), &number))

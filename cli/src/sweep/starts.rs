@@ -79,7 +79,7 @@ pub(super) fn started(
 const APART: f64 = 1e-3;
 
 /// The derivatives of a scenario's assembled start by some targets, times their scales: of each the numbers of
-/// positions, velocities and turn references.
+/// positions, velocities, states and turn references.
 ///
 /// # Errors
 /// Why it cannot start nearby.
@@ -91,7 +91,7 @@ pub(super) fn slopes(page: &Model, plan: &Plan, by: &[usize], values: &[f64]) ->
             values[*target] += parts * APART * plan.scale(*target);
             let (start, _) = started(page, (&plan.targets, &values), &[])
                 .map_err(|words| format!("they take a start nearby: {words}"))?;
-            Ok::<_, String>([start.positions, start.velocities, start.turn_references].concat())
+            Ok::<_, String>([start.positions, start.velocities, start.states, start.turn_references].concat())
         };
         let [far_below, below, above, far_above] =
             [shifted(-2.0)?, shifted(-1.0)?, shifted(1.0)?, shifted(2.0)?];

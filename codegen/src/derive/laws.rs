@@ -67,9 +67,10 @@ pub fn see(system: &mut System, readings: &impl Readings, line: Option<&Line>, s
     }
 }
 
-/// A number of an output of position or velocity.
+/// A number of an output of position or velocity, or a state.
 fn of_output(system: &mut System, output: usize, number: usize) -> ExprId {
     match &system.model.outputs[output].kind {
+        OutputKind::State { state } => system.graph.symbol(Symbol::State(*state)),
         OutputKind::Pose(frame) => points::pose(system, frame)[number],
         OutputKind::Velocity(frame) => points::velocity(system, frame)[number],
         // Of these the rates alone.

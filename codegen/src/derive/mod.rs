@@ -42,8 +42,8 @@ pub struct Observed {
     pub power: ExprId,
     /// The same without the forces that act along joint coordinates.
     pub power_but_along_coordinates: ExprId,
-    /// Rates of the turn references.
-    pub turn_rates: Vec<ExprId>,
+    /// Rates of the states, then of the turn references.
+    pub other_rates: Vec<ExprId>,
     pub readings: Vec<ExprId>,
     /// (ṙ, ṗ) of each moving body by eqs. (16) and (14).
     pub position_rates: Vec<ExprId>,
@@ -56,13 +56,20 @@ impl Observed {
         let outputs = outputs::derive(system, &sources);
         let drivers_power = outputs::drivers_power(system, &sources);
         let power = system.graph.add(dynamics.power, drivers_power);
+        let mut other_rates = state_rates(system);
         let turns = system.model.turn_references();
-        let turn_rates = turns.into_iter().map(|turn| joint_coordinate::rate(system, turn)).collect();
+        other_rates.extend(turns.into_iter().map(|turn| joint_coordinate::rate(system, turn)));
         let readings = readings::readings(system);
         let position_rates = position_rates(system);
         let power_but_along_coordinates = system.graph.add(dynamics.power_at_points, drivers_power);
-        Self { outputs, power, power_but_along_coordinates, turn_rates, readings, position_rates }
+        Self { outputs, power, power_but_along_coordinates, other_rates, readings, position_rates }
     }
+}
+
+/// Rates of the states.
+pub fn state_rates(system: &mut System) -> Vec<ExprId> {
+    let states = system.model.states.iter();
+    states.map(|state| laws::strength(system, &laws::OfBodies, &state.rate)).collect()
 }
 
 fn position_rates(system: &mut System) -> Vec<ExprId> {

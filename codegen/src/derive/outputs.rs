@@ -70,6 +70,7 @@ fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<Exp
             vec![rows.fold(Graph::ZERO, |sum, row| system.graph.sub(sum, sources.lambda[row]))]
         }
         OutputKind::Spring { force } | OutputKind::Link { force } => forces::elastic(system, *force).to_vec(),
+        OutputKind::State { state } => vec![system.graph.symbol(Symbol::State(*state))],
         OutputKind::Formula(formula) => vec![formula_value(system, sources, formula)],
         OutputKind::Energy => vec![sources.dynamics.kinetic, sources.dynamics.potential],
         OutputKind::Power => vec![sources.dynamics.power, drivers_power(system, sources)],

@@ -67,8 +67,8 @@ pub struct Equations<'m> {
     pub position_rates: Vec<ExprId>,
     /// Power of non-conservative forces and drivers, where the state carries their work; the accelerations being known.
     pub power: Option<ExprId>,
-    /// Rates of the turn references.
-    pub turn_rates: Vec<ExprId>,
+    /// Rates of the states, then of the turn references.
+    pub other_rates: Vec<ExprId>,
     pub kinetic: ExprId,
     pub potential: ExprId,
     pub readings: Vec<ExprId>,
@@ -179,7 +179,7 @@ impl<'m> Equations<'m> {
             lambda: expanded(&solution.lambda),
             position_rates: observed.position_rates.clone(),
             power: model.has_work().then(|| expanded(&[observed.power])[0]),
-            turn_rates: expanded(&observed.turn_rates),
+            other_rates: expanded(&observed.other_rates),
             kinetic: energy[0],
             potential: energy[1],
             readings: expanded(&observed.readings),
@@ -217,9 +217,9 @@ impl<'m> Equations<'m> {
             Symbol::Spin { moving_body, k } => {
                 Some((Argument::State, 7 * n_bodies + 6 * moving_body + 3 + k))
             }
+            Symbol::State(state) => Some((Argument::State, self.first_state() + state)),
             Symbol::Turn(turn) => {
-                let work = usize::from(self.power.is_some());
-                Some((Argument::State, 13 * n_bodies + work + turn))
+                Some((Argument::State, self.first_state() + self.model.states.len() + turn))
             }
             Symbol::Acceleration { moving_body, k } => Some((Argument::Accelerations, 6 * moving_body + k)),
             Symbol::LoopMultiplier(row) => Some((Argument::Accelerations, self.n_velocities() + row)),
@@ -240,7 +240,8 @@ impl<'m> Equations<'m> {
             bodies: self.n_moving_bodies(),
             rows: self.n_rows,
             work: usize::from(self.power.is_some()),
-            turns: self.turn_rates.len(),
+            states: model.states.len(),
+            turns: self.other_rates.len() - model.states.len(),
             readings: self.readings.len(),
             outputs: self.outputs.len(),
             frames: space.map_or(0, frames),
@@ -255,6 +256,11 @@ impl<'m> Equations<'m> {
         }
     }
 
+    /// Where the states begin in the maximal state.
+    fn first_state(&self) -> usize {
+        13 * self.n_moving_bodies() + usize::from(self.power.is_some())
+    }
+
     /// Length of x.
     pub fn n_coordinates(&self) -> usize {
         self.joint_space.as_ref().map_or(0, |space| space.layout.n_coordinates)
@@ -262,7 +268,7 @@ impl<'m> Equations<'m> {
 
     /// ẏ without the accelerations.
     pub fn rates_but_accelerations(&self) -> Vec<ExprId> {
-        self.position_rates.iter().chain(&self.power).chain(&self.turn_rates).copied().collect()
+        self.position_rates.iter().chain(&self.power).chain(&self.other_rates).copied().collect()
     }
 
     /// The same where accelerations at corrected states go with it.

@@ -27,6 +27,8 @@ pub struct Domains {
     parameters: Vec<f64>,
     inputs: Vec<f64>,
     tables: Vec<Spline>,
+    /// Where states start.
+    states: Vec<f64>,
     /// Of joint coordinates a value and the largest distance from it.
     coordinates: BTreeMap<usize, (f64, f64)>,
     /// Rates at the start.
@@ -41,8 +43,9 @@ impl Default for Domains {
     fn default() -> Self {
         let (coordinates, orientations) = (BTreeMap::new(), Vec::new());
         let (parameters, inputs, rates) = (Vec::new(), Vec::new(), Vec::new());
-        let (tables, known) = (Vec::new(), Vec::new());
-        Self { t_end: 1.0, size: 1.0, parameters, inputs, tables, coordinates, rates, orientations, known }
+        let (tables, states, known) = (Vec::new(), Vec::new(), Vec::new());
+        let (t_end, size) = (1.0, 1.0);
+        Self { t_end, size, parameters, inputs, tables, states, coordinates, rates, orientations, known }
     }
 }
 
@@ -57,6 +60,10 @@ impl Domains {
     /// coordinates from each place of `orientations` on are Euler parameters.
     pub fn set_joints(&mut self, near: BTreeMap<usize, (f64, f64)>, rates: &[f64], orientations: Vec<usize>) {
         (self.coordinates, self.rates, self.orientations) = (near, rates.to_vec(), orientations);
+    }
+
+    pub fn set_states(&mut self, states: &[f64]) {
+        self.states = states.to_vec();
     }
 
     pub fn set_tables(&mut self, tables: &[&Spline]) {
@@ -86,6 +93,10 @@ impl Domains {
             }
             Symbol::Parameter(index) => near(self.parameters.get(index), point, between),
             Symbol::Input(index) => self.input(index, point, between),
+            Symbol::State(state) => {
+                let start = self.states.get(state).copied().unwrap_or(0.0);
+                start + start.abs().max(1.0) * between
+            }
             Symbol::Turn(_) | Symbol::Angle(_) => PI * between,
             Symbol::Table { table, order } => match self.tables.get(table) {
                 Some(table) => table.value(self.time(point)).get(order).copied().unwrap_or(between),

@@ -116,7 +116,7 @@ impl JointSpace {
         }
         let symbols: Vec<_> = (0..n_rates).map(|u| system.graph.symbol(Symbol::Rate(u))).collect();
         let mut rates = maps::coordinate_rates(system, &coordinates.layout, &symbols);
-        for (x, rate) in maps::turn_rates(system, &coordinates.layout, &coordinates.in_joints) {
+        for (x, rate) in maps::other_rates(system, &coordinates.layout, &coordinates.in_joints) {
             rates[x] = rate;
         }
         let along = forces::power(system, &coordinates.layout, &coordinates.angles);

@@ -82,6 +82,7 @@ impl Coordinates {
         let is_angle = |x: usize| self.layout.scalars().any(|of| of.place.x == x && of.kind.is_angle());
         let is_part = |x: usize| orientations.iter().any(|&first| (first..first + 4).contains(&x));
         let near = |x: usize| match (is_angle(x), is_part(x)) {
+            _ if self.layout.states().contains(&x) => (start[x], start[x].abs().max(1.0)),
             (false, false) => (start[x], if has_loops { NEAR * size } else { size }),
             _ if has_loops => (start[x], NEAR),
             (true, _) => (start[x], PI),

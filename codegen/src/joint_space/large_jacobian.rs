@@ -30,7 +30,12 @@ impl JointForm<'_> {
         let parts = Parts::of(system, self.coordinates, self.balance);
         let (tree, order) = (parts.tree.as_ref()?, parts.order());
         let response = parts.response(system, &order);
-        let is_of_state = |symbol: &Symbol| matches!(symbol, Symbol::Coordinate(_) | Symbol::Rate(_));
+        let states = self.coordinates.layout.states();
+        let is_of_state = |symbol: &Symbol| match symbol {
+            Symbol::Coordinate(x) => !states.contains(x),
+            Symbol::Rate(_) => true,
+            _ => false,
+        };
         let others: Vec<_> = variables.iter().copied().filter(|symbol| !is_of_state(symbol)).collect();
         let n = if others.len() < variables.len() { order.len() } else { 0 };
         let mut forces = Columns::new();
@@ -45,7 +50,7 @@ impl JointForm<'_> {
             let by_coordinate = self.by_coordinates(&mut system.graph, by_place);
             let mut by_others = by_others.iter();
             let column = |variable: &Symbol| match *variable {
-                Symbol::Coordinate(x) => by_coordinate[x].clone(),
+                Symbol::Coordinate(x) if !states.contains(&x) => by_coordinate[x].clone(),
                 Symbol::Rate(u) => by_rate[u].clone(),
                 _ => by_others.next().expect("a column for each of the others").clone(),
             };
@@ -87,7 +92,7 @@ impl JointForm<'_> {
     }
 }
 
-/// The derivatives of τ at these accelerations by what is no part of the state.
+/// The derivatives of τ at these accelerations by what is no part of the motion.
 fn forces_by(
     system: &mut System,
     parts: &Parts<'_>,

@@ -3,6 +3,7 @@
 use super::relation::{Determined, Relation};
 use crate::derive::system::System;
 use gyro_model::{Attachment, CoordinateKind, JointCoordinate, JointKind, Link};
+use std::ops::Range;
 
 /// The joint coordinates x and rates u of a tree: joints in the order of the model file, then free bodies.
 ///
@@ -21,6 +22,9 @@ pub struct Layout {
     /// The angles of cut joints whose whole turns x counts, with their places in x behind all others. They have no
     /// rates in u.
     pub turns: Vec<(JointCoordinate, usize)>,
+    /// Where the first of the states stands in x, behind these. They have no rates in u.
+    pub first_state: usize,
+    pub n_states: usize,
 }
 
 /// The coordinates of one link, in this order.
@@ -59,13 +63,21 @@ impl Layout {
             Attachment::Joint { joint, .. } => (0, joint),
             Attachment::Free | Attachment::Constrained => (1, link.body),
         });
-        let mut layout =
-            Self { links: Vec::new(), n_coordinates: 0, n_rates: 0, determined, turns: Vec::new() };
+        let mut layout = Self {
+            links: Vec::new(),
+            n_coordinates: 0,
+            n_rates: 0,
+            determined,
+            turns: Vec::new(),
+            first_state: 0,
+            n_states: system.model.states.len(),
+        };
         for link in links {
             let coordinates = layout.place(system, link);
             layout.links.push(coordinates);
         }
         layout.turns = turns.iter().map(|&turn| (turn, layout.take(1, 0).x)).collect();
+        layout.first_state = layout.take(layout.n_states, 0).x;
         let behind = |place: usize| Place { x: layout.n_coordinates + place, u: layout.n_rates + place };
         for scalar in layout.links.iter_mut().flat_map(|link| &mut link.scalars) {
             let place = layout.determined.iter().position(|known| known.coordinate == scalar.coordinate);
@@ -133,6 +145,11 @@ impl Layout {
     /// Where Euler parameters stand.
     pub fn orientations(&self) -> impl Iterator<Item = Place> {
         self.links.iter().filter_map(|link| link.orientation)
+    }
+
+    /// The places of states in x.
+    pub fn states(&self) -> Range<usize> {
+        self.first_state..self.first_state + self.n_states
     }
 
     /// Where a scalar coordinate of a joint stands.

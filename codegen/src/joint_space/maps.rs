@@ -8,6 +8,7 @@ use super::whole_angles::{Sum, WholeAngles};
 use crate::derive::frames::{JointFrames, sine_and_cosine};
 use crate::derive::joint_coordinate::{self, relative_spin};
 use crate::derive::readings::{raw_angle, relative_euler};
+use crate::derive::state_rates;
 use crate::derive::system::System;
 use crate::expr::definitions::{Expansion, Values};
 use crate::expr::evaluate::evaluate;
@@ -346,18 +347,20 @@ pub fn in_joints(
     values
 }
 
-/// The turn references that x has, with their places there.
+/// The turn references that x has, and the states, with their places there.
 fn references(system: &System, layout: &Layout) -> Vec<(Symbol, Symbol)> {
-    let turns = layout.turns.iter();
-    turns.map(|&(on, x)| (Symbol::Turn(system.turn_of(on)), Symbol::Coordinate(x))).collect()
+    let turns = layout.turns.iter().map(|&(on, x)| (Symbol::Turn(system.turn_of(on)), x));
+    let states = layout.states().enumerate().map(|(state, x)| (Symbol::State(state), x));
+    turns.chain(states).map(|(symbol, x)| (symbol, Symbol::Coordinate(x))).collect()
 }
 
-/// How fast the angles change whose turns x counts, with their places there.
-pub fn turn_rates(system: &mut System, layout: &Layout, in_joints: &Values) -> Vec<(usize, ExprId)> {
+/// How fast the angles change whose turns x counts, and the states, with their places there.
+pub fn other_rates(system: &mut System, layout: &Layout, in_joints: &Values) -> Vec<(usize, ExprId)> {
     let (turns, places): (Vec<_>, Vec<_>) = layout.turns.iter().copied().unzip();
-    let rates: Vec<_> = turns.into_iter().map(|on| joint_coordinate::rate(system, on)).collect();
+    let mut rates: Vec<_> = turns.into_iter().map(|on| joint_coordinate::rate(system, on)).collect();
+    rates.extend(state_rates(system));
     let rates = system.expanded(in_joints, &rates);
-    places.into_iter().zip(rates).collect()
+    places.into_iter().chain(layout.states()).zip(rates).collect()
 }
 
 /// The turn references of joints that close loops but those that x has.
@@ -409,7 +412,7 @@ pub fn coordinate_rates(system: &mut System, layout: &Layout, rates: &[ExprId]) 
     changes
 }
 
-/// Positions (r, p) of each moving_body, then velocities (s, w'), then turn references.
+/// Positions (r, p) of each moving_body, then velocities (s, w'), then states, then turn references.
 pub fn state(system: &System, values: &Values, in_joints: &Values) -> Vec<ExprId> {
     let moving_bodies = 0..system.moving_bodies.len();
     let position = |moving_body, k| {
@@ -424,7 +427,8 @@ pub fn state(system: &System, values: &Values, in_joints: &Values) -> Vec<ExprId
     let state = positions.chain(velocities).map(|symbol| values[&symbol]);
     let turn = |turn| in_joints.get(&Symbol::Angle(turn)).unwrap_or_else(|| &in_joints[&Symbol::Turn(turn)]);
     let turns = (0..system.model.turn_references().len()).map(|of| *turn(of));
-    state.chain(turns).collect()
+    let states = (0..system.model.states.len()).map(|state| in_joints[&Symbol::State(state)]);
+    state.chain(states).chain(turns).collect()
 }
 
 /// The joint state of the assembled start, continuous angles as the assembly has them.
@@ -453,6 +457,7 @@ pub fn at_start(system: &System, start: &Start, symbol: Symbol) -> f64 {
         Symbol::Euler { moving_body, k } => start.q[7 * moving_body + 3 + k],
         Symbol::Velocity { moving_body, k } => start.v[6 * moving_body + k],
         Symbol::Spin { moving_body, k } => start.v[6 * moving_body + 3 + k],
+        Symbol::State(state) => start.states[state],
         Symbol::Turn(turn) => {
             let on = system.model.turn_references()[turn];
             start.joints[on.joint].position[on.coordinate]

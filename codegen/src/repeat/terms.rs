@@ -197,6 +197,7 @@ pub fn variable(symbol: Symbol) -> (u8, usize, usize) {
         Symbol::Parameter(place) => (6, 0, place),
         Symbol::ParameterSetup(place) => (7, 0, place),
         Symbol::Input(place) => (8, 0, place),
+        Symbol::State(place) => (25, 0, place),
         Symbol::Turn(place) => (9, 0, place),
         Symbol::Angle(place) => (10, 0, place),
         Symbol::Table { table, order } => (11, order, table),

@@ -7,7 +7,7 @@ use gyro_model::{Attachment, CoordinateKind, Model};
 /// A place that has a name; of several numbers the first.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Index {
-    /// Of which kind it is: `joint` and `joint_rate`, `body` and `body_rate`, `input`, `parameter`, `output`. Names are
+    /// Of which kind it is: `joint` and `joint_rate`, `body` and `body_rate`, `state`, `input`, `parameter`, `output`. Names are
     /// unique among those of a kind and a coordinate.
     pub kind: &'static str,
     /// Which coordinate of a joint that has several.
@@ -67,6 +67,9 @@ pub fn indices(equations: &Equations) -> Vec<Index> {
     let mut list = |kind: &'static str, name: &str, place: usize| {
         indices.push(Index { kind, coordinate: None, name: name.to_owned(), place });
     };
+    if let Some(space) = &equations.joint_space {
+        model.states.iter().zip(space.layout.states()).for_each(|(of, x)| list("state", &of.name, x));
+    }
     model.inputs.iter().enumerate().for_each(|(n, input)| list("input", &input.name, n));
     let mut n_before = 0;
     for output in &model.outputs {

@@ -130,6 +130,9 @@ pub(crate) fn states(model: &Model, scheduled: &Scheduled) -> Vec<(String, Strin
                 }
                 coordinates.push((name, unit.to_owned()));
             }
+            JointPlace::State { state } => {
+                coordinates.push((model.states[state].name.clone(), "1".to_owned()))
+            }
             JointPlace::Orientation { joint } => {
                 let name = &model.joints[joint].name;
                 parts(&mut coordinates, name, &EULER, "1");

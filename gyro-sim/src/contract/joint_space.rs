@@ -16,7 +16,7 @@ use crate::wire::*;
 /// u has their rates: of Euler parameters the angular velocity relative to the first body in the second's frame, rad/s,
 /// of free bodies `s` and `w'`. Coordinates that couplers, drivers or loops determine as functions of others and of
 /// time are not among them. Last in x come turn references of joints that close loops, where something depends on how
-/// often these have turned; they have no rates in u.
+/// often these have turned, and then the states of the model file (currents, temperatures); neither have rates in u.
 ///
 /// # Loops
 /// Joints that are not of the tree close loops. What is left of their rows is the closure `Φ_c(t, x) = 0`. Of the
@@ -151,6 +151,11 @@ pub enum JointPlace {
         /// Which of the joint's coordinates it is.
         coordinate: u16,
     },
+    /// A state of one's own. One number in x, none in u.
+    State {
+        /// Index of the state.
+        state: u16,
+    },
 }
 
 impl JointLayout<'_> {
@@ -183,7 +188,7 @@ impl JointPlace {
     /// How many numbers it has in x.
     pub const fn n_coordinates(self) -> usize {
         match self {
-            Self::Scalar { .. } | Self::Turn { .. } => 1,
+            Self::Scalar { .. } | Self::Turn { .. } | Self::State { .. } => 1,
             Self::Orientation { .. } => 4,
             Self::Body { .. } => 7,
         }
@@ -192,7 +197,7 @@ impl JointPlace {
     /// Where among these Euler parameters start, if there are any.
     pub const fn euler(self) -> Option<usize> {
         match self {
-            Self::Scalar { .. } | Self::Turn { .. } => None,
+            Self::Scalar { .. } | Self::Turn { .. } | Self::State { .. } => None,
             Self::Orientation { .. } => Some(0),
             Self::Body { .. } => Some(3),
         }
@@ -204,7 +209,7 @@ impl JointPlace {
             Self::Scalar { .. } => 1,
             Self::Orientation { .. } => 3,
             Self::Body { .. } => 6,
-            Self::Turn { .. } => 0,
+            Self::Turn { .. } | Self::State { .. } => 0,
         }
     }
 }

@@ -198,9 +198,10 @@ impl<M: JointSpace<Scalar: Real>> CloseLoops<M> {
                     _ if is_angle(mechanism, place) => one,
                     JointPlace::Body { .. } if index >= 3 => two,
                     JointPlace::Orientation { .. } => two,
-                    JointPlace::Scalar { .. } | JointPlace::Turn { .. } | JointPlace::Body { .. } => {
-                        one / mechanism.size()
-                    }
+                    JointPlace::Scalar { .. }
+                    | JointPlace::Turn { .. }
+                    | JointPlace::State { .. }
+                    | JointPlace::Body { .. } => one / mechanism.size(),
                 };
                 let change = ((*after - *before) * scale).abs();
                 if change > M::Scalar::constant(FARTHEST) {

@@ -66,7 +66,7 @@ fn assembled(model: &Model, guesses: &[Guess], tree: &Tree) -> Result<Start, Ass
     check_finite(model, &tree.links, &states)?;
     let joints = joint_starts(&kinematics, &states, &at, &v);
     let moved = moves(model, tree, &scales, [&guessed.states, &states], [&guess, &at]);
-    Ok(Start { q: at.q, v, joints, moved })
+    Ok(Start { q: at.q, v, joints, states: Vec::new(), moved })
 }
 
 /// Whether the model file gives every coordinate that places a body on another: a pose that nobody wrote chooses

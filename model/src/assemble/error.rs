@@ -112,6 +112,15 @@ pub enum AssemblyError {
         /// Name of the force.
         name: String,
     },
+    /// No value near zero gives a state the rate zero.
+    Restless {
+        /// Index into [`crate::Model::states`].
+        state: usize,
+        /// Name of the state.
+        name: String,
+        /// The smallest rate that was reached.
+        rate: f64,
+    },
     /// A joint starts beyond a rigid stop.
     BeyondStop {
         /// Index into [`crate::Model::contacts`].
@@ -171,6 +180,7 @@ impl AssemblyError {
             | Self::Unconnected { body, .. } => Some(Place::body(*body, "")),
             Self::Held { joint, .. } => Some(Place::joint(*joint, "")),
             Self::Link { force, .. } => Some(Place::force(*force, "")),
+            Self::Restless { state, .. } => Some(Place { owner: Owner::State(*state), key: "start" }),
             Self::BeyondStop { contact, key, .. } => Some(Place { owner: Owner::Contact(*contact), key }),
             Self::Flipped { joint, direction, .. } => Some(Place::joint(*joint, direction)),
             Self::Impossible { owner, .. }
@@ -210,6 +220,7 @@ impl AssemblyError {
             Self::Link { .. } => "start the mechanism where the ends are apart, or move one of them; if they never separate, write a \
                                   force along the joint's coordinate (\"spring\" or \"damper\") instead"
                 .to_owned(),
+            Self::Restless { .. } => "write start = ..., a number".to_owned(),
             Self::BeyondStop { joint, key, stop, unit, .. } => {
                 let side = if *key == "lower" { "or more" } else { "or less" };
                 format!("start joint `{joint}` at {stop} {unit} {side}, or move the stop")
@@ -295,6 +306,10 @@ impl fmt::Display for AssemblyError {
             Self::BeyondStop { name, joint, key, value, stop, unit, .. } => write!(
                 f,
                 "joint `{joint}` starts at {value} {unit}, beyond the {key} stop of contact `{name}` at {stop} {unit}"
+            ),
+            Self::Restless { name, rate, .. } => write!(
+                f,
+                "state `{name}` cannot start at rest: no value was found at which its rate is zero, {rate:.3e} at best"
             ),
             Self::Link { name, .. } => {
                 write!(f, "the two ends of link `{name}` coincide at the start: its force has no direction")

@@ -10,6 +10,7 @@ mod guess;
 mod links;
 pub(crate) mod projection;
 mod side;
+mod states;
 mod stops;
 mod tolerance;
 mod velocity;
@@ -32,6 +33,8 @@ pub struct Start {
     pub v: Vec<f64>,
     /// The joints' own coordinates, in the order of [`Model::joints`].
     pub joints: Vec<JointStart>,
+    /// The states, in the order of [`Model::states`].
+    pub states: Vec<f64>,
     /// What the assembly had to move to close the mechanism, farthest first; nothing for open trees.
     pub moved: Vec<Move>,
 }
@@ -94,14 +97,17 @@ impl Model {
     /// An unconnected body; rows or given coordinates and rates that cannot be met, with the one that misses most; a
     /// pose on another branch than the guess (opposite axes, or beyond a pose where branches meet, if the guess tells
     /// all coordinates of the tree) or a quarter turn away from it; a link whose ends coincide; a joint beyond a rigid
-    /// stop; a start beyond `f64`.
+    /// stop; a state that does not come to rest; a start beyond `f64`.
     pub fn assemble(&self) -> Result<Start, AssemblyError> {
         let tree = Tree::of(self);
         if let Some(&body) = tree.unreached.first() {
             return Err(AssemblyError::Unconnected { body, name: self.bodies[body].name.clone() });
         }
         let start = if self.is_open(&tree) { self.walked(&tree)? } else { closing::assemble(self)? };
-        links::check(self, &start).and_then(|()| stops::check(self, &start)).map(|()| start)
+        links::check(self, &start)?;
+        stops::check(self, &start)?;
+        let states = states::at(self, &start)?;
+        Ok(Start { states, ..start })
     }
 
     /// Whether joint coordinates place every body, so that the assembly moves nothing.

@@ -241,7 +241,7 @@ impl<'m> Walk<'m> {
         if let Some(missed) = self.missed {
             return Err(missed);
         }
-        let start = Start { q, v, joints: self.joints, moved: Vec::new() };
+        let start = Start { q, v, joints: self.joints, states: Vec::new(), moved: Vec::new() };
         check_finite(self.model, links, &self.states).map(|()| start)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     KIND, Key, ON_COORDINATE, ON_JOINT, POINT, Table, Value, flag, kind, name, number, orientation, plain,
-    reference, text, word,
+    reference, strength, text, word,
 };
 
 /// Of a frame in a body.
@@ -150,6 +150,26 @@ pub static FORMULA: Table = Table::new(
     &[
         name("name, unlike those of joints, outputs, parameters and inputs"),
         text("of", "the formula").required().eg("of = \"...\""),
+    ],
+);
+
+/// `[[state]]`.
+pub static STATE: Table = Table::new(
+    "state",
+    "A quantity that a differential equation of first order tells, see [laws](laws.md).",
+    &[
+        name(
+            "name, unlike those of joints, outputs, parameters and inputs; its column in the table of a run",
+        ),
+        Key::new(
+            "start",
+            Value::Either(&[Value::Number(""), Value::Word(&[("rest", "where its rate is zero")])]),
+            "its value at the start",
+        )
+        .or("0"),
+        strength("rate", "", "its rate: a formula of whatever forces may depend on, and of states")
+            .required()
+            .eg("rate = \"...\", a formula such as \"(u - R*i - k*hinge rate)/L\""),
     ],
 );
 

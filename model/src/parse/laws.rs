@@ -78,7 +78,7 @@ fn known(reader: &Reader<'_>, item: Item<'_>) -> Known {
 fn refused(kinds: &[OutputKind], name: &str, seen: Seen) -> Option<[String; 3]> {
     let Seen::Output { output, number } = seen else { return None };
     let is_early = match kinds.get(output)? {
-        OutputKind::Pose(_) | OutputKind::Velocity(_) => true,
+        OutputKind::Pose(_) | OutputKind::Velocity(_) | OutputKind::State { .. } => true,
         OutputKind::Inertial(_) => number >= 3,
         OutputKind::Link { .. } => number == 1,
         _ => false,
@@ -87,8 +87,8 @@ fn refused(kinds: &[OutputKind], name: &str, seen: Seen) -> Option<[String; 3]> 
         [
             format!("a force cannot depend on `{name}`"),
             "known only once all forces are".to_owned(),
-            "name a joint coordinate, its rate, or a number of an output of position or velocity; an [[output]] \
-             tells accelerations and reactions"
+            "name a joint coordinate, its rate, a state, or a number of an output of position or velocity; an \
+             [[output]] tells accelerations and reactions"
                 .to_owned(),
         ]
     })

@@ -33,6 +33,7 @@ mod seen;
 mod shapes;
 mod simulation;
 mod start;
+mod states;
 mod synonyms;
 mod table;
 mod tables;

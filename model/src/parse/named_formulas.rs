@@ -31,7 +31,7 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) {
     for (index, (section, name)) in
         tables::each(reader, page, "formula", Owner::Formula).into_iter().enumerate()
     {
-        unlike_numbers(reader, index, &name);
+        unlike_numbers(reader, Owner::Formula(index), ("formula", &name));
         let Some(item) = section.find(reader, "of") else { continue };
         let Some(text) = item.text(reader) else { continue };
         match expression::parse(text) {
@@ -84,14 +84,14 @@ fn refuse_circle(reader: &mut Reader<'_>, pending: &mut Vec<Pending<'_>>) {
 }
 
 /// In formulas a name has one meaning.
-fn unlike_numbers(reader: &mut Reader<'_>, index: usize, name: &str) {
+pub(super) fn unlike_numbers(reader: &mut Reader<'_>, owner: Owner, (what, name): (&str, &str)) {
     let derived = reader.derived.iter().any(|(other, _)| other == name);
     if !derived && !reader.parameters.iter().chain(&reader.inputs).any(|other| other == name) {
         return;
     }
-    let place = Place { owner: Owner::Formula(index), key: "name" };
+    let place = Place { owner, key: "name" };
     let words = [
-        format!("`{name}` names a formula, and a parameter or an input"),
+        format!("`{name}` names a {what}, and a parameter or an input"),
         "used again".to_owned(),
         "choose another name".to_owned(),
     ];

@@ -9,7 +9,7 @@ use super::reader::Reader;
 use super::section::{Section, keyword};
 use super::{
     bodies, contacts, controllers, couplings, events, forces, joints, named_formulas, outputs, parameters,
-    point_masses, seen, simulation,
+    point_masses, seen, simulation, states,
 };
 use crate::keys::{FILE, GENERATE};
 use crate::validate::{Owner, Place};
@@ -44,12 +44,14 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     reader.names.entry("force").or_default().extend(named);
     let (mut outputs, pending) = outputs::read(reader, &page);
     contacts::loads(reader, &mut contacts, &joints, &mut outputs);
+    let states = states::open(reader, &page, &mut outputs);
     reader.visible = seen::known(reader, &outputs);
     reader.outputs = outputs.iter().map(|output| output.kind.clone()).collect();
     named_formulas::read(reader, &page);
     outputs::read_formulas(reader, pending, &mut outputs);
     let mut forces = forces::read(reader, sections);
     forces.extend(contacts.iter().map(Contact::own_force));
+    let states = states::read(reader, states);
     let controllers = controllers::read(reader, &page, &outputs);
     let events = events::read(reader, &page, &outputs);
     let redundant = Vec::new();
@@ -66,6 +68,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         drivers,
         forces,
         formulas: std::mem::take(&mut reader.formulas),
+        states,
         outputs,
         controllers,
         events,
@@ -77,6 +80,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         simulation,
     };
     point_masses::add(&mut model, &point_masses);
+    states::remark_unread(&mut model);
     model
 }
 

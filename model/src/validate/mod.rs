@@ -62,6 +62,7 @@ pub(crate) enum Owner {
     ForceEnd(usize, Side),
     Output(usize),
     Formula(usize),
+    State(usize),
     Controller(usize),
     Event(usize),
     Contact(usize),

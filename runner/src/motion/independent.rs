@@ -53,10 +53,12 @@ where
     let places = || tangent.independent.iter().map(|&k| &tangent.rates[k]);
     let positions = places().map(|rate| rate.position_at.map_or(0.0, |at| linear.state[at]));
     let rates = tangent.independent.iter().map(|&k| linear.state[tangent.n_coordinates + k]);
+    let states = tangent.states.iter().map(|&at| linear.state[at]);
+    let own = tangent.states.iter().map(|&at| linear.elements[at]);
     Linear {
         t: linear.t,
-        elements: places().map(Rate::element).chain(places().map(Rate::element_of_rate)).collect(),
-        state: positions.chain(rates).collect(),
+        elements: places().map(Rate::element).chain(places().map(Rate::element_of_rate)).chain(own).collect(),
+        state: positions.chain(rates).chain(states).collect(),
         slope: tangent.kept(&linear.slope),
         by_state: rows(&by_state.collect::<Vec<_>>()),
         by_inputs: rows(&by_inputs.collect::<Vec<_>>()),
@@ -86,7 +88,7 @@ impl Rate {
         for &place in layout.places {
             let n_lengths = match place {
                 JointPlace::Scalar { .. } => 1,
-                JointPlace::Orientation { .. } | JointPlace::Turn { .. } => 0,
+                JointPlace::Orientation { .. } | JointPlace::Turn { .. } | JointPlace::State { .. } => 0,
                 JointPlace::Body { .. } => 3,
             };
             for component in 0..place.n_rates() {
@@ -135,6 +137,8 @@ fn is_angle(description: &Description<'_>, place: JointPlace) -> bool {
 /// rates follow positions.
 struct Tangent {
     n_coordinates: usize,
+    /// Where the model file's own states stand in x: they are independent of all that is closed.
+    states: Vec<usize>,
     rates: Vec<Rate>,
     /// Indices of the independent rates: N is one there and W zero.
     independent: Vec<usize>,
@@ -152,7 +156,11 @@ impl Tangent {
         let layout = mechanism.joint_layout();
         let rates = Rate::all(mechanism, &linear.state);
         let n_coordinates = layout.n_coordinates();
-        let tangent = Self { n_coordinates, rates, independent: Vec::new(), columns: Vec::new() };
+        let is_state = |&at: &usize| {
+            matches!(linear.elements[at], Element::Position { place: JointPlace::State { .. }, .. })
+        };
+        let states = (0..n_coordinates).filter(is_state).collect();
+        let tangent = Self { n_coordinates, states, rates, independent: Vec::new(), columns: Vec::new() };
         let changes = tangent.closed(duals, linear.t, x).into_iter().zip(&tangent.rates);
         let columns = changes.map(|(change, rate)| {
             let rates = change[n_coordinates..].iter().take(tangent.rates.len()).copied();
@@ -189,7 +197,7 @@ impl Tangent {
         self.rates.iter().map(along).collect()
     }
 
-    /// The changes of (x, u) as each independent coordinate and each independent rate changes.
+    /// The changes of (x, u) as each independent coordinate, each independent rate and each state changes.
     fn directions(&self) -> Vec<Vec<f64>> {
         let n_rates = self.rates.len();
         let mut directions = Vec::new();
@@ -206,14 +214,20 @@ impl Tangent {
         }
         let at_rest = vec![0.0; self.n_coordinates];
         directions.extend(self.columns.iter().map(|column| [&at_rest, &column[..n_rates]].concat()));
+        directions.extend(self.states.iter().map(|&at| {
+            let mut direction = vec![0.0; self.n_coordinates + n_rates];
+            direction[at] = 1.0;
+            direction
+        }));
         directions
     }
 
-    /// What a change of (x, u) is in independent coordinates and rates.
+    /// What a change of (x, u) is in independent coordinates, rates and states.
     fn kept(&self, change: &[f64]) -> Vec<f64> {
         let (positions, rates) = (self.along_rates(change), &change[self.n_coordinates..]);
         let of = |all: &[f64]| self.independent.iter().map(|&k| all[k]).collect::<Vec<_>>();
-        [of(&positions), of(rates)].concat()
+        let states = self.states.iter().map(|&at| change[at]).collect();
+        [of(&positions), of(rates), states].concat()
     }
 }
 

@@ -58,17 +58,17 @@ impl Layout {
 /// The joint state of a maximal start.
 pub(super) fn joint_start<M: JointSpace<Scalar: Real>>(mechanism: &M, start: &Start) -> M::Joints {
     let (mut y, mut x) = (mechanism.start(), mechanism.joint_start());
-    let known = start.positions.iter().chain(&start.velocities).chain(&start.turn_references);
-    write_start(start, known.map(|value| Scalar::constant(*value)), y.as_mut());
+    let known = start.positions.iter().chain(&start.velocities).copied().chain(start.others());
+    write_start(start, known.map(Scalar::constant), y.as_mut());
     mechanism.to_joints(Scalar::constant(0.0), &y, &mut x);
     x
 }
 
-/// Writes a maximal state: what is known of it are positions, velocities and turn references; work is between.
+/// Writes a maximal state: what is known of it are positions, velocities, states and turn references; work is between.
 pub(super) fn write_start<T>(start: &Start, known: impl Iterator<Item = T>, y: &mut [T]) {
-    let references = y.len() - start.turn_references.len();
+    let others = y.len() - start.n_others();
     let moving = start.positions.len() + start.velocities.len();
-    let places = (0..moving).chain(references..y.len());
+    let places = (0..moving).chain(others..y.len());
     places.zip(known).for_each(|(place, value)| y[place] = value);
 }
 

@@ -294,16 +294,17 @@ where
 {
     let x = joint_start(mechanism, start);
     let n = x.as_ref().len();
-    let own = start.positions.len() + start.velocities.len() + start.turn_references.len();
+    let own = start.positions.len() + start.velocities.len() + start.n_others();
     let directions = slopes.len() / own.max(1);
     let mut state = x.as_ref().to_vec();
     state.resize(n * (1 + directions), 0.0);
     for (k, part) in parts.iter().enumerate() {
         let (mut y, mut x) = (part.mechanism.start(), part.joints(k, &state));
-        let known = start.positions.iter().chain(&start.velocities).chain(&start.turn_references).enumerate();
-        let number = |(at, value): (usize, &f64)| {
+        let known =
+            start.positions.iter().chain(&start.velocities).copied().chain(start.others()).enumerate();
+        let number = |(at, value): (usize, f64)| {
             let slope = |column| slopes.get((k * COLUMNS + column) * own + at).copied().unwrap_or(0.0);
-            Dual { value: *value, slopes: core::array::from_fn(slope) }
+            Dual { value, slopes: core::array::from_fn(slope) }
         };
         write_start(start, known.map(number), y.as_mut());
         part.mechanism.to_joints(Dual::new(0.0), &y, &mut x);

@@ -75,6 +75,7 @@ fn freedom(written: &Expr) -> Result<Freedom, Refusal> {
         Some("Turn") => {
             Freedom::Turn(JointCoordinate { joint: number("joint")?, coordinate: number("coordinate")? })
         }
+        Some("State") => Freedom::State(number("state")?),
         Some("Orientation") => Freedom::Orientation { joint: number("joint")? },
         Some("Body") => Freedom::Body { moving_body: number("body")? },
         _ => return Err(refused(written)),

@@ -204,7 +204,7 @@ fn derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
         let [forces, drivers] = textbook.power(&multipliers, &accelerations)?;
         expected.push(forces.add(&drivers));
     }
-    expected.extend(textbook.turn_rates());
+    expected.extend(textbook.other_rates()?);
     let mut residuals = differences(&case.run_with("derivative", &case.point, &accelerations), &expected);
     residuals.extend(position_rates(case, "derivative")?);
     Some(residuals)

@@ -18,7 +18,7 @@ use super::residuals::{differences, position_rates};
 use crate::atoms::Atoms;
 use crate::field::Field;
 use crate::joints::{Freedom, JointLayout};
-use crate::point::Point;
+use crate::point::{Point, first_state};
 use crate::program::Source;
 use crate::tape::{Term, Written};
 use crate::textbook::Reading;
@@ -167,6 +167,7 @@ pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
                 _ => return None,
             },
             Freedom::Turn(_) => continue,
+            Freedom::State(state) => (vec![*maximal.own_state(case.model, state)], x.to_vec()),
             Freedom::Body { moving_body } => {
                 let found = [maximal.position(moving_body), maximal.velocity(case.model, moving_body)];
                 (found.concat(), [x, u].concat())
@@ -174,9 +175,10 @@ pub fn to_maximal<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
         };
         residuals.extend(differences(&found, &expected));
     }
-    let (work, turns) = maximal.state[13 * case.n_bodies()..].split_at(usize::from(layout.has_work));
+    let work = &maximal.state[13 * case.n_bodies()..first_state(case.model)];
     residuals.extend(differences(work, &case.joints[layout.n_motion()..]));
-    for (turn, found) in case.model.turn_references().into_iter().zip(turns) {
+    for (place, turn) in case.model.turn_references().into_iter().enumerate() {
+        let found = maximal.turn_reference(case.model, place);
         let Some(place) = layout.scalar(turn).or_else(|| layout.turn(turn)) else {
             residuals.extend(angle_differs(case, layout, textbook.reading(turn)?, turn, found));
             continue;
@@ -242,6 +244,7 @@ pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
                 Reading::Orientation(numbers) => numbers.to_vec(),
                 _ => return None,
             },
+            Freedom::State(state) => vec![*case.point.own_state(case.model, state)],
             Freedom::Turn(on) => vec![*case.point.turn_reference(case.model, case.turn(on)?)],
             Freedom::Body { moving_body } => {
                 [case.point.position(moving_body), case.point.velocity(case.model, moving_body)].concat()
@@ -275,8 +278,7 @@ pub fn derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let (textbook, n) = (case.textbook(&motion.maximal)?, case.n_bodies());
     let (rates, layout) = (&motion.maximal_rates, motion.layout);
     let mut residuals = differences(&rates[..7 * n], &textbook.position_rates());
-    let turns = 13 * n + usize::from(layout.has_work);
-    residuals.extend(differences(&rates[turns..], &textbook.turn_rates()));
+    residuals.extend(differences(&rates[first_state(case.model)..], &textbook.other_rates()?));
     let (found, rest) = motion.derivative[layout.n_coordinates..].split_at(layout.n_rates);
     residuals.extend(differences(found, &motion.rates_of_rates));
     residuals.extend(differences(rest, &motion.power()?));
@@ -292,7 +294,7 @@ fn coordinate_rates<'a>(case: &Case<'a>, layout: &JointLayout, found: &[Term<'a>
         let (coordinates, rates) = place.of.sizes();
         let u = &joints[layout.n_coordinates + place.u..][..rates];
         let found = &found[place.x..place.x + coordinates];
-        if let Freedom::Turn(_) = place.of {
+        if let Freedom::Turn(_) | Freedom::State(_) = place.of {
             // It moves as that of the maximal state.
             continue;
         }
@@ -333,9 +335,9 @@ pub fn corrected_derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
         let textbook = case.textbook(point)?;
         let (moved, rest) = found.split_at(13 * case.n_bodies());
         residuals.extend(differences(moved, &[textbook.position_rates(), accelerations].concat()));
-        let (work, turns) = rest.split_at(usize::from(motion.layout.has_work));
+        let (work, others) = rest.split_at(usize::from(motion.layout.has_work));
         residuals.extend(power.iter().flat_map(|power| differences(work, power)));
-        residuals.extend(differences(turns, &textbook.turn_rates()));
+        residuals.extend(differences(others, &textbook.other_rates()?));
     }
     residuals.extend(position_rates(case, "corrected_derivative")?);
     Some(residuals)

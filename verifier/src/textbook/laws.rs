@@ -97,7 +97,7 @@ impl<F: Field> Evaluation<'_, F> {
         }
     }
 
-    /// A number of an output of position or velocity.
+    /// A number of an output of position or velocity, or a state.
     fn early(&self, output: usize, number: usize) -> Option<F> {
         let model = self.textbook.model;
         match &model.outputs[output].kind {
@@ -112,7 +112,7 @@ impl<F: Field> Evaluation<'_, F> {
                 let line = to - from;
                 self.scope.sqrt(&line.dot(&line)).map(|length| length.value)
             }
-            kind @ (OutputKind::Pose(_) | OutputKind::Velocity(_)) => {
+            kind @ (OutputKind::Pose(_) | OutputKind::Velocity(_) | OutputKind::State { .. }) => {
                 self.output(kind, &[], &[])?.get(number).cloned()
             }
             _ => None,
@@ -121,13 +121,9 @@ impl<F: Field> Evaluation<'_, F> {
 }
 
 impl Evaluation<'_, f64> {
-    /// Whether all formulas of forces and outputs have finite values and derivatives here.
+    /// Whether all formulas of forces, states and outputs have finite values and derivatives here.
     pub fn has_smooth_formulas(&self) -> bool {
-        let model = self.textbook.model;
-        let numbers = model.forces.iter().flat_map(|force| force.kind.parts().numbers);
-        let of_forces = numbers.flat_map(|(_, numbers)| numbers).filter_map(Number::formula);
-        let of_outputs = model.outputs.iter().filter_map(|output| output.kind.formula());
-        of_forces.chain(of_outputs).all(|formula| {
+        self.textbook.model.laws().all(|formula| {
             let see = |by: Seen| {
                 let see = |seen| {
                     let known = match seen {

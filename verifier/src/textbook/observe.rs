@@ -69,9 +69,12 @@ impl<F: Field> Evaluation<'_, F> {
         moving.flat_map(|pose| pose.r.0.iter().chain(&pose.p).map(rate).collect::<Vec<F>>()).collect()
     }
 
-    /// The rates of the turn references.
-    pub fn turn_rates(&self) -> Vec<F> {
-        self.textbook.turns.iter().map(|&turn| self.coordinate_rate(turn).value).collect()
+    /// The rates of the states, then of the turn references: of what stands behind the work.
+    pub fn other_rates(&self) -> Option<Vec<F>> {
+        let states = self.textbook.model.states.iter();
+        let rates = states.map(|state| Some(self.strength(&state.rate)?.value)).collect::<Option<Vec<_>>>();
+        let turns = self.textbook.turns.iter().map(|&turn| self.coordinate_rate(turn).value);
+        rates.map(|rates| rates.into_iter().chain(turns).collect())
     }
 
     /// The numbers of all outputs, at accelerations `(s̈, ẇ')` of the bodies with coordinates and multipliers of all
@@ -117,6 +120,9 @@ impl<F: Field> Evaluation<'_, F> {
             }
             OutputKind::Formula(formula) => {
                 vec![self.formula_output(&formula.text, accelerations, lambda)?]
+            }
+            OutputKind::State { state } => {
+                vec![self.scope.point.own_state(self.textbook.model, *state).clone()]
             }
             OutputKind::Driver { driver } => vec![self.load(RowOwner::Driver(*driver), lambda)],
             OutputKind::Coupler { coupler } => vec![self.load(RowOwner::Coupler(*coupler), lambda)],

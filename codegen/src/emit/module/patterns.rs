@@ -59,6 +59,10 @@ pub fn joint_layout(joint: &JointForm) -> TokenStream {
             let [joint, coordinate] = [joint, coordinate].map(index);
             quote! { gyro_sim::JointPlace::Turn { joint: #joint, coordinate: #coordinate } }
         }
+        JointPlace::State { state } => {
+            let state = index(state);
+            quote! { gyro_sim::JointPlace::State { state: #state } }
+        }
         JointPlace::Body { body } => {
             let body = index(body);
             quote! { gyro_sim::JointPlace::Body { body: #body } }

@@ -41,6 +41,7 @@ impl Variables for ModuleWriter<'_> {
                 let name = ident(&self.model().inputs[input].name);
                 (quote! { self.#name }, None)
             }
+            Symbol::State(state) => bound(format!("state{state}")),
             Symbol::Turn(turn) => bound(format!("turn{turn}")),
             Symbol::Table { table, order } => {
                 let (name, order) = (ident(&format!("table{table}")), index(order));

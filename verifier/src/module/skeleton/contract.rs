@@ -194,6 +194,7 @@ fn layout(joints: &JointLayout) -> String {
                 format!("Scalar {{ joint: {}, coordinate: {} }}", on.joint, on.coordinate)
             }
             Freedom::Turn(on) => format!("Turn {{ joint: {}, coordinate: {} }}", on.joint, on.coordinate),
+            Freedom::State(state) => format!("State {{ state: {state} }}"),
             Freedom::Orientation { joint } => format!("Orientation {{ joint: {joint} }}"),
             Freedom::Body { moving_body } => format!("Body {{ body: {moving_body} }}"),
         };

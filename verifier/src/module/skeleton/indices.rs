@@ -28,6 +28,7 @@ fn of_joints(model: &Model, joints: &JointLayout) -> String {
     let name = |of: Freedom| match of {
         Freedom::Scalar(on) | Freedom::Turn(on) => &model.joints[on.joint].name,
         Freedom::Orientation { joint } => &model.joints[joint].name,
+        Freedom::State(state) => &model.states[state].name,
         Freedom::Body { moving_body } => &model.bodies[model.coordinate_bodies()[moving_body]].name,
     };
     let inner = |of: Freedom| match of {
@@ -38,6 +39,7 @@ fn of_joints(model: &Model, joints: &JointLayout) -> String {
         Freedom::Orientation { .. } => "orientation",
         Freedom::Body { .. } => "body",
         Freedom::Turn(_) => "turn",
+        Freedom::State(_) => "state",
     };
     let of = |wanted: &str, are_rates: bool| {
         let places = joints.places.iter().filter(|place| inner(place.of) == wanted);
@@ -58,6 +60,7 @@ fn of_joints(model: &Model, joints: &JointLayout) -> String {
         module("joint_rate", &of_kind(true)),
         module("body", &of("body", false)),
         module("body_rate", &of("body", true)),
+        module("state", &of("state", false)),
     ]
     .concat()
 }

@@ -1,12 +1,12 @@
 //! What solvers and observers see of a mechanism.
 
 use super::pieces::{list, names, setter};
+use crate::point::first_state;
 use gyro_model::{CoordinateKind, JointKind, Model, RowOwner, RowUnit};
 
 /// Number of elements of the state.
 pub fn n_state(model: &Model) -> usize {
-    let n = model.coordinate_bodies().len();
-    13 * n + usize::from(model.has_work()) + model.turn_references().len()
+    first_state(model) + model.states.len() + model.turn_references().len()
 }
 
 fn coordinates(kind: JointKind) -> String {

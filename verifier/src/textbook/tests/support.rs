@@ -96,6 +96,7 @@ pub fn random_point(textbook: &Textbook, seed: u64) -> Point<f64> {
     }
     normalise(&mut state, n);
     state.extend(model.has_work().then_some(0.0));
+    state.extend(start.states.iter().map(|state| state + signed(0.1)));
     let turns = textbook.turns.iter().map(|turn| start.joints[turn.joint].position[turn.coordinate]);
     state.extend(turns.map(|turn| turn + signed(0.1)));
     let values =
@@ -211,8 +212,9 @@ pub fn later(textbook: &Textbook, point: &Point<f64>, accelerations: &[f64], dt:
     let rates = [evaluation.position_rates(), accelerations.to_vec()].concat();
     let mut later = point.clone();
     later.state.iter_mut().zip(&rates).for_each(|(y, rate)| *y += dt * rate);
-    let turns = point.state.len() - textbook.turns.len();
-    later.state[turns..].iter_mut().zip(evaluation.turn_rates()).for_each(|(turn, rate)| *turn += dt * rate);
+    let others = evaluation.other_rates().expect("rates");
+    let first = point.state.len() - others.len();
+    later.state[first..].iter_mut().zip(others).for_each(|(other, rate)| *other += dt * rate);
     normalise(&mut later.state, n);
     later.t += dt;
     later
