@@ -23,7 +23,7 @@ pub(crate) struct Writer<'a> {
 const SETUP: &str = "parameter_setup";
 
 /// What each kind of named places is.
-const KINDS: [(&str, &str); 7] = [
+const KINDS: [(&str, &str); 8] = [
     ("joint", "Coordinates of joints in the joint state, rad or m; of Euler parameters the first of four."),
     (
         "joint_rate",
@@ -31,6 +31,7 @@ const KINDS: [(&str, &str); 7] = [
     ),
     ("body", "Free bodies in the joint state: r (m) and Euler parameters, the first of seven."),
     ("body_rate", "Their velocities (m/s) and angular velocities (rad/s, body's axes), the first of six."),
+    ("state", "The model file's own states in the joint state."),
     ("input", "Inputs."),
     ("parameter", "Parameters."),
     ("output", "Outputs; of one that has several numbers the first."),
@@ -124,7 +125,7 @@ impl<'a> Writer<'a> {
             (
                 "N_STATE",
                 self.scheduled.len(Space::State),
-                "r and Euler parameters of all bodies, then (s, w'), then work",
+                "r and Euler parameters of all bodies, then (s, w'), then work, states and turns",
             ),
             ("N_ROWS", self.scheduled.len(Space::Rows), "rows of all joints"),
             ("N_CONSTRAINTS", self.scheduled.len(Space::Constraints), "these and the normalisations"),
@@ -133,7 +134,7 @@ impl<'a> Writer<'a> {
             (
                 "N_JOINTS",
                 self.scheduled.len(Space::Joints),
-                "the joint state: coordinates, then rates, then work",
+                "the joint state: coordinates, states among them, then rates, then work",
             ),
             ("N_RATES", self.scheduled.len(Space::Rates), "rates of joint coordinates"),
             ("N_CLOSURE", self.scheduled.len(Space::Closure), "rows that close loops"),

@@ -16,6 +16,7 @@ mod loads;
 mod orientation;
 mod plants;
 mod refusals;
+mod states;
 mod stops;
 mod support;
 mod verdicts;

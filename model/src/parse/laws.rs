@@ -59,10 +59,11 @@ fn beside_rates(name: &str) -> [String; 3] {
     ]
 }
 
-/// Whether a name in place of a strength is one of what moves.
+/// Whether a name in place of a strength is one of what moves, or that of a formula.
 pub(super) fn is_meant(reader: &Reader<'_>, item: Item<'_>, name: &str) -> bool {
     let known = known(reader, item);
     name == "t"
+        || reader.formulas.iter().any(|(formula, _)| formula == name)
         || reader.has_joint(name)
         || names::column(name, known.iter().map(|(known, _)| known.as_str())).is_some()
 }

@@ -127,8 +127,35 @@ impl Page {
             };
             self.elements += &format!("\n[[force]]\nname = \"law{index}\"\nkind = \"{kind}\"\n{keys}");
         }
-        let formula = Words { dice: &mut dice, names }.formula(2);
+        let formula = Words { dice: &mut dice, names: names.clone() }.formula(2);
         self.elements += &format!("\n[[output]]\nname = \"told\"\nkind = \"formula\"\nof = {formula:?}\n");
+        self.states(seed, coordinates[0], names);
+    }
+
+    /// States that forces depend on, in half of the model files with laws.
+    fn states(&mut self, seed: u64, on: (usize, &'static str), mut names: Vec<String>) {
+        let mut dice = Dice::new(seed.rotate_left(31));
+        if dice.once_in(2) {
+            return;
+        }
+        let n_states = 1 + dice.below(2);
+        let before = names.clone();
+        names.extend((0..n_states).map(|state| format!("s{state}")));
+        for state in 0..n_states {
+            // What a state starts at rest from must have one place of rest.
+            let (names, start) = match dice.below(3) {
+                0 => (&before, "\"rest\"".to_owned()),
+                1 => (&names, String::new()),
+                _ => (&names, dice.pick(&["0.7", "\"-1/3\"", "2e-2"]).to_owned()),
+            };
+            let formula = Words { dice: &mut dice, names: names.clone() }.formula(2);
+            let start = if start.is_empty() { start } else { format!("start = {start}\n") };
+            let rate = format!("tanh({formula}) - 1.5*s{state}");
+            self.elements += &format!("\n[[state]]\nname = \"s{state}\"\n{start}rate = {rate:?}\n");
+        }
+        let motor = self.motor(&mut dice, on, &names, 1);
+        let value = motor.replace("value = \"", "value = \"0.4*s0 + ");
+        self.elements += &format!("\n[[force]]\nname = \"of_states\"\nkind = \"motor\"\n{value}");
     }
 
     fn motor(
