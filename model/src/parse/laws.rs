@@ -23,7 +23,9 @@ pub(super) fn strength(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> O
         ("energy", Seen::Coordinate(_)) | ("power", Seen::Coordinate(_) | Seen::Rate(_) | Seen::Time) => None,
         ("energy", _) => Some(beside_coordinates(name)),
         ("power", _) => Some(beside_rates(name)),
-        _ => refused(&kinds, name, seen),
+        (key, _) => {
+            refused(&kinds, if key == "rate" { "the rate of a state" } else { "a force" }, (name, seen))
+        }
     };
     let inputs = if is_energy { Inputs::Unknown } else { Inputs::Known };
     match with_names(reader, &known, inputs, &refuse, |named| named.formula(text)) {
@@ -76,7 +78,7 @@ fn known(reader: &Reader<'_>, item: Item<'_>) -> Known {
 }
 
 /// Forces are known before accelerations are: outputs of these are nothing that a force may depend on.
-fn refused(kinds: &[OutputKind], name: &str, seen: Seen) -> Option<[String; 3]> {
+fn refused(kinds: &[OutputKind], what: &str, (name, seen): (&str, Seen)) -> Option<[String; 3]> {
     let Seen::Output { output, number } = seen else { return None };
     let is_early = match kinds.get(output)? {
         OutputKind::Pose(_) | OutputKind::Velocity(_) | OutputKind::State { .. } => true,
@@ -86,7 +88,7 @@ fn refused(kinds: &[OutputKind], name: &str, seen: Seen) -> Option<[String; 3]> 
     };
     (!is_early).then(|| {
         [
-            format!("a force cannot depend on `{name}`"),
+            format!("{what} cannot depend on `{name}`"),
             "known only once all forces are".to_owned(),
             "name a joint coordinate, its rate, a state, or a number of an output of position or velocity; an \
              [[output]] tells accelerations and reactions"

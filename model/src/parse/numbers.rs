@@ -397,8 +397,14 @@ fn unknown_name(reader: &Reader<'_>, key: &str, text: &str, allowed: Names) -> [
             ("parameter or input", "[parameters] or [inputs]")
         }
     };
+    let moving =
+        reader.visible.iter().map(|(name, _)| name).chain(reader.formulas.iter().map(|(name, _)| name));
+    let moving: Vec<&str> = moving.map(String::as_str).collect();
+    let is_strength = matches!(allowed, Names::ParametersAndInputs);
     let help = if parse_decimal(text).is_some() {
         format!("write {text} without quotes")
+    } else if let Some(meant) = names::meant(name, &moving).filter(|_| is_strength) {
+        format!("write `{meant}`, or declare `{name}` under {tables}")
     } else if known.is_empty() {
         format!("write a number, or declare {name} under {tables}")
     } else {

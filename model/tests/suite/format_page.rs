@@ -25,7 +25,7 @@ fn read(text: &str) -> Result<Model, Diagnostics> {
 }
 
 /// All tables of keys that the document shows.
-const TABLES: [&Table; 16] = [
+const TABLES: [&Table; 18] = [
     &keys::FILE,
     &keys::SIMULATION,
     &keys::BODY,
@@ -38,6 +38,8 @@ const TABLES: [&Table; 16] = [
     &keys::MOTION,
     &keys::SINUSOID,
     &keys::FORCE,
+    &keys::FORMULA,
+    &keys::STATE,
     &keys::OUTPUT,
     &keys::CONTROLLER,
     &keys::EVENT,

@@ -239,6 +239,7 @@ fn check_references(model: &Model) {
             OutputKind::Driver { driver } => assert!(driver < model.drivers.len()),
             OutputKind::Coupler { coupler } => assert!(coupler < model.couplers.len()),
             OutputKind::Spring { force } | OutputKind::Link { force } => assert!(force < model.forces.len()),
+            OutputKind::State { state } => assert!(state < model.states.len()),
             OutputKind::Formula(_) | OutputKind::Energy | OutputKind::Power => {}
         }
     }
