@@ -29,6 +29,14 @@ pub(crate) fn inputs(model: &Model, given: &[(String, InputSetting)]) -> Result<
             let words = format!("--input {name}: this is part of the motion of `{owner}`");
             return Err(Failure::Usage(words));
         }
+        let followed = paths::followed(model, index);
+        if let Some([place, ..]) = followed.filter(|[place, ..]| *place != index) {
+            let name_of = &model.inputs[place].name;
+            let words = format!(
+                "--input {name}: this is a derivative of the motion `{name_of}`: give `{name_of}`, from which it follows"
+            );
+            return Err(Failure::Usage(words));
+        }
         let input = match setting {
             InputSetting::Number(value) => Input::constant(index, *value),
             InputSetting::File(path, said) => {
@@ -43,9 +51,30 @@ pub(crate) fn inputs(model: &Model, given: &[(String, InputSetting)]) -> Result<
             }
         };
         check(model, &input).map_err(|words| Failure::Usage(format!("--input {name}: {words}")))?;
-        inputs.push(input);
+        match followed {
+            None => inputs.push(input),
+            Some(of) if input.rows.len() == 1 || input.between == Between::Smooth => {
+                inputs.extend(Input::motion(of, &input.rows));
+            }
+            Some(_) => {
+                let words =
+                    format!("--input {name}: a motion follows this input, whose velocity would jump: smooth");
+                return Err(Failure::Usage(words));
+            }
+        }
     }
     Ok(inputs)
+}
+
+/// Has motions start where the inputs that they follow do.
+pub(crate) fn start_motions(model: &mut Model, inputs: &[Input]) {
+    for of in model.followed_inputs().into_iter().map(|(_, of)| of).collect::<Vec<_>>() {
+        for input in inputs.iter().filter(|input| of.contains(&input.index)) {
+            if let Some(value) = Rational::from_float(input.at(0.0)) {
+                model.inputs[input.index].value = value;
+            }
+        }
+    }
 }
 
 /// An input as the table in a file has it, between its rows as is said or else as in the model file.

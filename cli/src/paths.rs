@@ -1,4 +1,4 @@
-//! Motions along straight lines, whose velocities jump.
+//! Motions that inputs are part of: along straight lines, whose velocities jump, and those that follow inputs.
 
 use crate::failure::Failure;
 use gyro_model::Model;
@@ -10,10 +10,16 @@ pub(crate) fn paths(model: &Model) -> Vec<Path> {
     lines.into_iter().map(|(_, lines)| Path { inputs: lines.inputs, rows: lines.rows.clone() }).collect()
 }
 
-/// The driver or body whose motion an input is part of.
+/// The driver or body whose motion along straight lines an input is part of.
 pub(crate) fn moving(model: &Model, input: usize) -> Option<&str> {
     let mut lines = model.lines().into_iter();
     lines.find_map(|(name, lines)| lines.inputs.contains(&input).then_some(name))
+}
+
+/// Value, rate and acceleration of the motion that an input is part of, if a motion follows it.
+pub(crate) fn followed(model: &Model, input: usize) -> Option<[usize; 3]> {
+    let mut followed = model.followed_inputs().into_iter();
+    followed.find_map(|(_, inputs)| inputs.contains(&input).then_some(inputs))
 }
 
 /// Refuses a model with such a motion.

@@ -57,6 +57,7 @@ impl Scene {
         events::add(&mut model, &args.event)?;
         contacts::refuse_shared_reactions(&model)?;
         let inputs = inputs::inputs(&model, &args.input)?;
+        inputs::start_motions(&mut model, &inputs);
         let start_controllers = controllers::controllers(&model);
         let offers = Offers {
             inputs_vary: any_varies(&inputs) || !start_controllers.is_empty(),

@@ -205,7 +205,11 @@ fn phases(motion: &Motion, remarks: &mut Vec<String>) {
     match motion {
         Motion::Sinusoid { phase, .. } => remarks.extend(right_angle("a phase", phase, "phase_deg")),
         Motion::Sum(parts) | Motion::Product(parts) => parts.iter().for_each(|part| phases(part, remarks)),
-        Motion::Polynomial(_) | Motion::Table(_) | Motion::Lines(_) | Motion::Formula(_) => {}
+        Motion::Polynomial(_)
+        | Motion::Table(_)
+        | Motion::Lines(_)
+        | Motion::Formula(_)
+        | Motion::Input(_) => {}
     }
 }
 

@@ -4,7 +4,7 @@ use num_dual::Dual2_64;
 
 use crate::scalar::{Scalar, product};
 use crate::sight::Sight;
-use crate::{Body, Formula, Lines, Model, Number, Quaternion, Spline, Vector, unit_vector};
+use crate::{Body, Formula, Lines, Model, Number, Quaternion, Spline, Vector, to_f64, unit_vector};
 
 /// A function of time with values in rad or m.
 #[derive(Clone, Debug)]
@@ -30,6 +30,8 @@ pub enum Motion {
     Lines(Lines),
     /// A formula of time.
     Formula(Formula),
+    /// An input: the indices of its value, of its rate and of its acceleration among [`Model::inputs`].
+    Input([usize; 3]),
 }
 
 /// A body's whole motion, prescribed: it has no coordinates, its pose is folded into the formulas as a function of
@@ -73,7 +75,11 @@ impl Motion {
     /// The knots of its smooth tables.
     fn add_knots(&self, knots: &mut Vec<f64>) {
         match self {
-            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Lines(_) | Self::Formula(_) => {}
+            Self::Polynomial(_)
+            | Self::Sinusoid { .. }
+            | Self::Lines(_)
+            | Self::Formula(_)
+            | Self::Input(_) => {}
             Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.add_knots(knots)),
             Self::Table(spline) => knots.extend(&spline.knots),
         }
@@ -95,6 +101,10 @@ impl Motion {
             Self::Table(spline) => spline.at(t),
             Self::Lines(lines) => lines.at(t),
             Self::Formula(formula) => Sight::new(model, formula).value(|_| D::zero(), t),
+            Self::Input(inputs) => {
+                let [place, rate, acceleration] = inputs.map(|index| to_f64(&model.inputs[index].value));
+                (t * (0.5 * acceleration) + rate) * t + place
+            }
         }
     }
 }
@@ -164,21 +174,41 @@ impl Body {
 }
 
 impl Motion {
-    /// All straight lines that are part of it.
-    pub(crate) fn lines(&self) -> Vec<&Lines> {
+    /// It, or the motions that it is a sum or a product of.
+    fn parts(&self) -> Vec<&Self> {
         match self {
-            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Table(_) | Self::Formula(_) => Vec::new(),
-            Self::Sum(parts) | Self::Product(parts) => parts.iter().flat_map(Self::lines).collect(),
-            Self::Lines(lines) => vec![lines],
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().flat_map(Self::parts).collect(),
+            other => vec![other],
         }
     }
 
-    pub(crate) fn lines_mut(&mut self) -> Vec<&mut Lines> {
+    fn parts_mut(&mut self) -> Vec<&mut Self> {
         match self {
-            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Table(_) | Self::Formula(_) => Vec::new(),
-            Self::Sum(parts) | Self::Product(parts) => parts.iter_mut().flat_map(Self::lines_mut).collect(),
-            Self::Lines(lines) => vec![lines],
+            Self::Sum(parts) | Self::Product(parts) => parts.iter_mut().flat_map(Self::parts_mut).collect(),
+            other => vec![other],
         }
+    }
+
+    /// All straight lines that are part of it.
+    pub(crate) fn lines(&self) -> Vec<&Lines> {
+        let parts = self.parts().into_iter();
+        parts.filter_map(|part| if let Self::Lines(lines) = part { Some(lines) } else { None }).collect()
+    }
+
+    pub(crate) fn lines_mut(&mut self) -> Vec<&mut Lines> {
+        let parts = self.parts_mut().into_iter();
+        parts.filter_map(|part| if let Self::Lines(lines) = part { Some(lines) } else { None }).collect()
+    }
+
+    /// All inputs that are part of it.
+    pub(crate) fn inputs(&self) -> Vec<[usize; 3]> {
+        let parts = self.parts().into_iter();
+        parts.filter_map(|part| if let Self::Input(inputs) = part { Some(*inputs) } else { None }).collect()
+    }
+
+    pub(crate) fn inputs_mut(&mut self) -> Vec<&mut [usize; 3]> {
+        let parts = self.parts_mut().into_iter();
+        parts.filter_map(|part| if let Self::Input(inputs) = part { Some(inputs) } else { None }).collect()
     }
 }
 

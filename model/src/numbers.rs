@@ -83,7 +83,7 @@ impl Motion {
                 parts.iter().for_each(|part| part.add_numbers(numbers));
             }
             Self::Formula(formula) => numbers.extend(formula.numbers()),
-            Self::Table(_) | Self::Lines(_) => {}
+            Self::Table(_) | Self::Lines(_) | Self::Input(_) => {}
         }
     }
 }

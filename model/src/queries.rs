@@ -303,14 +303,33 @@ impl Model {
 impl Model {
     /// All motions along straight lines, each with the name of the driver or body that moves so.
     pub fn lines(&self) -> Vec<(&str, &Lines)> {
-        let of_drivers = self
-            .drivers
-            .iter()
-            .flat_map(|driver| driver.motion.lines().into_iter().map(|lines| (driver.name.as_str(), lines)));
+        let motions = self.motions();
+        motions
+            .flat_map(|(name, motion)| motion.lines().into_iter().map(move |lines| (name, lines)))
+            .collect()
+    }
+
+    /// All inputs that motions follow, each once, with the name of a driver or body that moves so: the indices of its
+    /// value, its rate and its acceleration.
+    pub fn followed_inputs(&self) -> Vec<(&str, [usize; 3])> {
+        let mut found: Vec<(&str, [usize; 3])> = Vec::new();
+        for (name, motion) in self.motions() {
+            for inputs in motion.inputs() {
+                if found.iter().all(|(_, known)| *known != inputs) {
+                    found.push((name, inputs));
+                }
+            }
+        }
+        found
+    }
+
+    /// All motions, each with the name of the driver or body that moves so.
+    fn motions(&self) -> impl Iterator<Item = (&str, &Motion)> {
+        let of_drivers = self.drivers.iter().map(|driver| (driver.name.as_str(), &driver.motion));
         let of_bodies = self.bodies.iter().flat_map(|body| {
-            let parts = body.motion.iter().flat_map(BodyMotion::parts).flat_map(Motion::lines);
-            parts.map(|lines| (body.name.as_str(), lines))
+            let parts = body.motion.iter().flat_map(BodyMotion::parts);
+            parts.map(|motion| (body.name.as_str(), motion))
         });
-        of_drivers.chain(of_bodies).collect()
+        of_drivers.chain(of_bodies)
     }
 }

@@ -4,7 +4,8 @@ use gyro_sim::{Mechanism, Scalar};
 use nanoserde::{DeBin, SerBin};
 
 /// What one of the mechanism's inputs is over time: the rows of a table with what is between them, and held beyond its
-/// ends. A table of one row is a constant.
+/// ends; or a motion that goes through the rows, and on straight beyond its ends, with its rate or its acceleration. A
+/// table of one row is a constant.
 ///
 /// Under error control equations see the input at every time, and steps end where it is not smooth. Each step of fixed
 /// length has the value at its own start, held over the step, as a sampled controller gives it. Each sample has the
@@ -19,6 +20,8 @@ pub struct Input {
     pub between: Between,
     /// Second derivatives at the rows of a smooth input.
     bends: Vec<f64>,
+    /// Of a motion, which derivative it is.
+    order: Option<u8>,
 }
 
 /// What an input is between the rows of its table.
@@ -37,7 +40,17 @@ impl Input {
     /// An input that follows a table.
     pub fn new(index: usize, rows: Vec<[f64; 2]>, between: Between) -> Self {
         let bends = if between == Between::Smooth { bends(&rows) } else { Vec::new() };
-        Self { index, rows, between, bends }
+        Self { index, rows, between, bends, order: None }
+    }
+
+    /// A motion along the smooth curve through some rows, by the inputs of its value, its rate and its acceleration.
+    pub fn motion(inputs: [usize; 3], rows: &[[f64; 2]]) -> [Self; 3] {
+        let whole = Self::new(inputs[0], rows.to_vec(), Between::Smooth);
+        [0, 1, 2].map(|order: u8| Self {
+            index: inputs[usize::from(order)],
+            order: Some(order),
+            ..whole.clone()
+        })
     }
 
     /// An input that does not change.
@@ -47,6 +60,10 @@ impl Input {
 
     /// The value at a time, at a row that of the row; zero for an empty table.
     pub fn at(&self, t: f64) -> f64 {
+        if self.order.is_some() {
+            let (origin, coefficients) = self.piece(t);
+            return cubic(&coefficients, t - origin);
+        }
         let after = self.rows.partition_point(|[time, _]| *time <= t);
         match (after.checked_sub(1).and_then(|before| self.rows.get(before)), self.rows.get(after)) {
             (Some([t0, before]), Some([t1, after])) if self.between == Between::Linear => {
@@ -64,9 +81,31 @@ impl Input {
     /// The cubic `c0 + c1 u + c2 u² + c3 u³` that holds from a time on, to the next row, and the time from which its u
     /// counts.
     pub(crate) fn piece(&self, t: f64) -> (f64, [f64; 4]) {
+        let Some(order) = self.order else { return self.piece_of_rows(t) };
+        let (mut origin, mut coefficients) = self.piece_of_rows(t);
+        if let [[first, _], .., [last, _]] = self.rows[..]
+            && !(first..last).contains(&t)
+        {
+            // Straight on, as the curve is not bent at its ends.
+            let (end, width) =
+                if t < first { (first, 0.0) } else { (last, last - self.rows[self.rows.len() - 2][0]) };
+            let (_, [c0, c1, c2, c3]) =
+                self.piece_of_rows(if t < first { first } else { self.rows[self.rows.len() - 2][0] });
+            let slope = c1 + width * (2.0 * c2 + width * (3.0 * c3));
+            (origin, coefficients) = (end, [cubic(&[c0, c1, c2, c3], width), slope, 0.0, 0.0]);
+        }
+        for _ in 0..order {
+            let [_, c1, c2, c3] = coefficients;
+            coefficients = [c1, 2.0 * c2, 3.0 * c3, 0.0];
+        }
+        (origin, coefficients)
+    }
+
+    fn piece_of_rows(&self, t: f64) -> (f64, [f64; 4]) {
         let after = self.rows.partition_point(|[time, _]| *time <= t);
         let Some((from, [t1, to])) = after.checked_sub(1).zip(self.rows.get(after)) else {
-            return (t, [self.at(t), 0.0, 0.0, 0.0]);
+            let held = if after == 0 { self.rows.first() } else { self.rows.last() };
+            return (t, [held.map_or(0.0, |row| row[1]), 0.0, 0.0, 0.0]);
         };
         let [t0, value] = self.rows[from];
         let (width, rise) = (t1 - t0, to - value);

@@ -106,7 +106,7 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/cut_armatures.rs", "armatures-in-loop", "«graph.add(sum, part)»\n        });\n        let torque", "sum"),
     fault("joint_space/cut_armatures.rs", "armatures-in-loop", "*sum = «graph.add(*sum, part)»;", "part"),
     fault("joint_space/closure.rs", "armature-of-cut-slide", "map(|(u, by)| (Symbol::Rate(u), «by»)).collect()", "if u < self.layout.n_tree_rates() { by } else { Graph::ZERO }"),
-    fault("joint_space/maps.rs", "springs-in-loop", "let rates: Vec<_> = turns.into_iter().map(|on| «joint_coordinate::rate(system, on)»)", "joint_coordinate::value(system, on)"),
+    fault("joint_space/maps.rs", "springs-in-loop", "let mut rates: Vec<_> = turns.into_iter().map(|on| «joint_coordinate::rate(system, on)»)", "joint_coordinate::value(system, on)"),
     fault("joint_space/coordinates.rs", "springs-in-loop", "turned.into_iter().for_each(|(place, angle)| x[place] = «angle»);", "x[place]"),
     fault("derive/forces.rs", "torsion", "(«graph.neg(pull)», graph", "pull"),
     fault("derive/forces.rs", "torsion", "«graph.mul(half, double)»)", "double"),

@@ -23,6 +23,8 @@ pub(crate) enum Course {
     Line([f64; 4], [usize; 4]),
     /// A formula of time.
     Formula(Tracked<f64>),
+    /// Value, rate and acceleration, and the inputs that these are.
+    Input([f64; 3], [usize; 3]),
 }
 
 /// A body's whole motion.
@@ -51,6 +53,9 @@ impl Course {
             Motion::Product(motions) => Self::Product(all(motions)),
             Motion::Table(spline) => Self::Table(spline.clone()),
             Motion::Formula(formula) => Self::Formula(Tracked::of_time(model, formula)),
+            Motion::Input(inputs) => {
+                Self::Input(inputs.map(|index| gyro_model::to_f64(&model.inputs[index].value)), *inputs)
+            }
             Motion::Lines(lines) => {
                 let value = |index: usize| gyro_model::to_f64(&model.inputs[index].value);
                 Self::Line(lines.inputs.map(value), lines.inputs)
@@ -82,6 +87,7 @@ impl Course {
             }),
             Self::Table(spline) => table(&spline.knots, &spline.pieces, t),
             Self::Formula(formula) => formula.jet(&[], t),
+            Self::Input(numbers, _) => *numbers,
             Self::Line([from, place, rate, acceleration], _) => {
                 polynomial(&[*place, *rate, 0.5 * acceleration], t - from)
             }
@@ -95,12 +101,15 @@ impl Course {
             Self::Sum(parts) | Self::Product(parts) => {
                 parts.iter_mut().for_each(|part| part.set_input(index, value));
             }
-            Self::Line(numbers, inputs) => {
-                let own = numbers.iter_mut().zip(inputs).filter(|(_, input)| **input == index);
-                own.for_each(|(number, _)| *number = value);
-            }
+            Self::Line(numbers, inputs) => set(numbers, inputs, (index, value)),
+            Self::Input(numbers, inputs) => set(numbers, inputs, (index, value)),
         }
     }
+}
+
+fn set(numbers: &mut [f64], inputs: &[usize], (index, value): (usize, f64)) {
+    let own = numbers.iter_mut().zip(inputs).filter(|(_, input)| **input == index);
+    own.for_each(|(number, _)| *number = value);
 }
 
 /// Horner's rule for a polynomial and its derivatives.

@@ -15,7 +15,9 @@ fn setters(model: &Model) -> Vec<Setter> {
     let contacts = contacts.map(|one| setter(SetterKind::Contact, &one.name, vec![one.input]));
     let lines = model.lines().into_iter();
     let lines = lines.map(|(name, lines)| setter(SetterKind::Lines, name, lines.inputs.to_vec()));
-    controllers.chain(contacts).chain(lines).collect()
+    let followed = model.followed_inputs().into_iter();
+    let followed = followed.map(|(name, inputs)| setter(SetterKind::Lines, name, inputs.to_vec()));
+    controllers.chain(contacts).chain(lines).chain(followed).collect()
 }
 
 /// What the model file gives of starts and lets the assembly move.

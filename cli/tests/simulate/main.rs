@@ -8,6 +8,7 @@ mod contacts;
 mod controllers;
 mod defaults;
 mod events;
+mod followed;
 mod inputs;
 mod interrupted;
 mod kinks;

@@ -1,6 +1,7 @@
 //! Φ_q, ν and γ, derived from Φ by differentiation.
 
 use crate::derive::constraints;
+use crate::derive::in_time::in_time;
 use crate::derive::system::System;
 use crate::expr::differentiate::{Derivative, Direction};
 use crate::expr::graph::{ExprId, Graph, Node};
@@ -44,7 +45,7 @@ impl Kinematics {
             rotations.map(|(moving_body, k)| system.unit_direction(moving_body, k)).collect();
         let phi_pi = columns(system, &phi, &rows_of_moving_bodies, virtual_motions);
 
-        let time = Direction::from([(Symbol::Time, Graph::ONE)]);
+        let time = in_time(&mut system.graph, system.model);
         let phi_t = along(system, &phi, time);
         let nu = phi_t.iter().map(|&row| system.graph.neg(row)).collect();
         let velocity_residual = motion_derivative(system, &phi);

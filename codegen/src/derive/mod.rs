@@ -5,6 +5,7 @@ pub mod constraints;
 pub mod dynamics;
 pub mod forces;
 pub mod frames;
+pub mod in_time;
 pub mod joint_coordinate;
 pub mod kinematics;
 pub mod laws;

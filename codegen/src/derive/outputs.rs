@@ -2,13 +2,13 @@
 
 use crate::derive::dynamics::Dynamics;
 use crate::derive::forces;
+use crate::derive::in_time::in_time;
 use crate::derive::joint_coordinate::Load;
 use crate::derive::kinematics::Kinematics;
 use crate::derive::laws::{self, OfBodies};
 use crate::derive::points::{self, by_axes};
 use crate::derive::system::System;
 use crate::expr::differentiate::Derivative;
-use crate::expr::differentiate::Direction;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Vec3, ZERO3};
@@ -108,7 +108,7 @@ fn linear_and_angular(system: &mut System, frame: &BodyFrame) -> (Vec3, Vec3) {
 }
 
 pub fn time_derivative(system: &mut System, vector: &Vec3) -> Vec3 {
-    let time = Direction::from([(Symbol::Time, Graph::ONE)]);
+    let time = in_time(&mut system.graph, system.model);
     let mut derivative = Derivative::new(&system.definitions, time);
     vector.map(|x| derivative.of(&mut system.graph, x))
 }

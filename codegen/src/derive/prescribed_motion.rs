@@ -1,9 +1,10 @@
 //! Motions prescribed in time, as expressions.
 
+use crate::derive::in_time::in_time;
 use crate::derive::laws::{self, OfBodies};
 use crate::derive::system::{Pose, System};
 use crate::expr::definitions::Definitions;
-use crate::expr::differentiate::{Derivative, Direction};
+use crate::expr::differentiate::Derivative;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Mat3, UNIT3, Vec3, Vec4, ZERO3};
@@ -46,6 +47,7 @@ impl<'m> System<'m> {
                 self.graph.symbol(Symbol::Table { table, order: 0 })
             }
             Motion::Lines(lines) => self.line(lines),
+            Motion::Input([place, ..]) => self.graph.symbol(Symbol::Input(*place)),
             Motion::Formula(formula) => {
                 laws::value(self, formula, |system, seen| laws::see(system, &OfBodies, None, seen))
             }
@@ -99,7 +101,7 @@ impl<'m> System<'m> {
     }
 
     fn time_derivative(&mut self, expression: ExprId) -> ExprId {
-        let time = Direction::from([(Symbol::Time, Graph::ONE)]);
+        let time = in_time(&mut self.graph, self.model);
         Derivative::new(&Definitions::default(), time).of(&mut self.graph, expression)
     }
 }

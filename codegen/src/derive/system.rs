@@ -1,6 +1,7 @@
 //! A model lowered to expressions: poses, joint frames, masses. Fixed bodies are constants, the others symbols.
 
 use crate::derive::frames::{End, JointFrames, sine_and_cosine};
+use crate::derive::in_time::in_time;
 use crate::effort::Effort;
 use crate::expr::definitions::{Definitions, Expansion, Values};
 use crate::expr::differentiate::Direction;
@@ -295,7 +296,7 @@ impl<'m> System<'m> {
     pub fn motion(&mut self) -> Direction {
         let motion = self.velocities();
         let first = self.direction(&motion);
-        let mut direction = Direction::from([(Symbol::Time, Graph::ONE)]);
+        let mut direction = in_time(&mut self.graph, self.model);
         for (symbol, derivative) in first {
             let rate = match symbol {
                 Symbol::Rotation { moving_body, row, column } => {

@@ -6,13 +6,14 @@ use super::layout::{Layout, Place};
 use super::relation::Relation;
 use super::whole_angles::WholeAngles;
 use crate::derive::frames::sine_and_cosine;
+use crate::derive::in_time::in_time;
 use crate::derive::system::System;
 use crate::expr::definitions::{Definitions, Expansion, Values};
 use crate::expr::differentiate::{Derivative, Direction};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use crate::simplify::normal_form::{normal_form, vanishes};
-use gyro_model::RowOwner;
+use gyro_model::{Model, RowOwner};
 use std::array::from_fn;
 use std::collections::BTreeSet;
 
@@ -123,11 +124,11 @@ impl Closure {
                 row.push(derivative.of(graph, phi));
             }
         }
-        let motion = directions.of_motion(graph);
+        let motion = directions.of_motion(graph, system.model);
         let mut derivative = Derivative::new(&definitions, motion);
         let residual: Vec<_> = phi.iter().map(|&phi| derivative.of(graph, phi)).collect();
         let residual = normal_form(graph, unit, &residual);
-        let motion = directions.of_motion(graph);
+        let motion = directions.of_motion(graph, system.model);
         let mut derivative = Derivative::new(&definitions, motion);
         let gamma: Vec<_> = residual
             .iter()
@@ -229,9 +230,9 @@ impl Directions<'_> {
     }
 
     /// All rates as they are, and constant but for what time changes.
-    pub fn of_motion(&self, graph: &mut Graph) -> Direction {
+    pub fn of_motion(&self, graph: &mut Graph, model: &Model) -> Direction {
         let mut direction = self.along(graph, |graph, u| graph.symbol(Symbol::Rate(u)));
-        direction.insert(Symbol::Time, Graph::ONE);
+        direction.extend(in_time(graph, model));
         let rates = &self.embedding.rates;
         direction.extend(rates.iter().enumerate().map(|(u, motion)| (Symbol::Rate(u), motion.bias)));
         for (place, sum) in self.angles.places() {

@@ -46,7 +46,7 @@ impl CutArmature {
         if !system.model.coordinate_kind(on).is_angle() {
             let value = joint_coordinate::value(system, on);
             let value = system.expanded(&directions.angles.poses, &[value])[0];
-            let motion = directions.of_motion(&mut system.graph);
+            let motion = directions.of_motion(&mut system.graph, system.model);
             rate = Derivative::new(&none, motion).of(&mut system.graph, value);
         }
         let mut values = directions.angles.poses.clone();
@@ -62,7 +62,7 @@ impl CutArmature {
             Derivative::new(&none, alone).of(graph, rate)
         };
         let by_rates = (0..layout.n_rates).map(by_rate).collect();
-        let motion = directions.of_motion(&mut system.graph);
+        let motion = directions.of_motion(&mut system.graph, system.model);
         let bias = Derivative::new(&none, motion).of(&mut system.graph, rate);
         Some(Self { inertia: rotor.inertia, by_rates, bias })
     }

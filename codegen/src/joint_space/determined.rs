@@ -3,9 +3,10 @@
 
 use super::layout::{Layout, Place};
 use super::relation::{Determined, Relation, linear};
+use crate::derive::in_time::in_time;
 use crate::derive::system::System;
 use crate::expr::definitions::{Definitions, Values};
-use crate::expr::differentiate::{Derivative, Direction};
+use crate::expr::differentiate::Derivative;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::symbol::Symbol;
 use gyro_model::{JointCoordinate, Model, RowOwner};
@@ -85,8 +86,8 @@ pub fn values(system: &mut System, layout: &Layout) -> Values {
         let [x, u, rate_of_rate] = match known.by {
             Relation::Driver(driver) => {
                 let value = system.prescribed(&system.model.drivers[driver].motion);
-                let rate = by_time(&mut system.graph, value);
-                [value, rate, by_time(&mut system.graph, rate)]
+                let rate = by_time(system, value);
+                [value, rate, by_time(system, rate)]
             }
             Relation::Held(_) => [Graph::ZERO; 3],
             Relation::Forward(coupler) | Relation::Backward(coupler) => {
@@ -122,7 +123,7 @@ pub fn place_of(layout: &Layout, on: JointCoordinate) -> Place {
     layout.scalar(on).expect("joints of a tree have their coordinates").place
 }
 
-fn by_time(graph: &mut Graph, value: ExprId) -> ExprId {
-    let time = Direction::from([(Symbol::Time, Graph::ONE)]);
-    Derivative::new(&Definitions::default(), time).of(graph, value)
+fn by_time(system: &mut System, value: ExprId) -> ExprId {
+    let time = in_time(&mut system.graph, system.model);
+    Derivative::new(&Definitions::default(), time).of(&mut system.graph, value)
 }

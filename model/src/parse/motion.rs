@@ -31,6 +31,7 @@ pub(super) fn read(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
             item.wrong(reader, words);
             None
         }
+        DeValue::String(text) if followed(reader, text).is_some() => followed(reader, text),
         DeValue::String(text) if moves(reader, text) => in_time(reader, item, text),
         _ => number(reader, item).map(|constant| Motion::Polynomial(vec![constant])),
     };
@@ -38,6 +39,21 @@ pub(super) fn read(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {
         reader.doubt(item.place);
     }
     motion
+}
+
+/// An input that is followed, or its opposite; its rate and acceleration are found once all inputs are known.
+fn followed(reader: &Reader<'_>, text: &str) -> Option<Motion> {
+    let text = text.trim();
+    let input = |name: &str| {
+        let place = reader.inputs.iter().position(|input| input == name)?;
+        Some(Motion::Input([place; 3]))
+    };
+    match text.strip_prefix('-') {
+        None => input(text),
+        Some(name) => {
+            Some(Motion::Product(vec![Motion::Polynomial(vec![Number::integer(-1)]), input(name.trim())?]))
+        }
+    }
 }
 
 /// Whether a text is a formula rather than a number: it names the time, or calls a function.

@@ -31,6 +31,9 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let couplers = couplings::couplers(reader, &page);
     let mut drivers = couplings::drivers(reader, &page);
     let sections = forces::open(reader, &page);
+    let taken = parameters.iter().map(|p| p.name.as_str()).chain(parameters::OWN_FIELDS);
+    let taken: Vec<&str> = taken.chain(derived.iter().map(|p| p.name.as_str())).collect();
+    lines::follow_inputs(reader, (&mut bodies, &mut drivers), &taken, (&mut inputs, &mut between));
     let n_inputs = inputs.len() + lines::n_inputs((&mut bodies, &mut drivers));
     let mut contacts = contacts::read(reader, &page, n_inputs);
     let taken = contacts.iter().map(|contact| &contact.name).chain(parameters.iter().map(|p| &p.name));

@@ -126,6 +126,11 @@ fn own_field(name: &str) -> [String; 3] {
 /// Value of an input that has more, and what the input is between the rows of a table.
 fn input(reader: &mut Reader<'_>, owner: Owner, table: &DeTable<'_>) -> (Option<Rational>, Between) {
     let section = Section::open(reader, owner, "the input", table, &INPUT);
+    if let (Some(item), Owner::Input(index)) = (section.get("between"), owner)
+        && item.value.get_ref().as_str() != Some("smooth")
+    {
+        reader.corners.push((index, item.span()));
+    }
     let between = match section.word(reader, "between") {
         Some("held") => Between::Held,
         Some("smooth") => Between::Smooth,

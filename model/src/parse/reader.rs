@@ -27,6 +27,8 @@ pub(super) struct Reader<'t> {
     pub(super) derived: Vec<(String, Number)>,
     /// Names of the model file's inputs; forces may refer to them.
     pub(super) inputs: Vec<String>,
+    /// Inputs of which the model file says that they have corners or steps, with where it says so.
+    pub(super) corners: Vec<(usize, Range<usize>)>,
     /// Names of the model file's bodies, joints and so on, by what they are, as far as it states them correctly.
     pub(super) names: HashMap<&'static str, Vec<Option<String>>>,
     /// Numbers of the mechanism by the names that formulas have for them, once outputs are read.
@@ -68,6 +70,7 @@ impl<'t> Reader<'t> {
             values: Vec::new(),
             derived: Vec::new(),
             inputs: Vec::new(),
+            corners: Vec::new(),
             names: HashMap::new(),
             visible: Vec::new(),
             outputs: Vec::new(),

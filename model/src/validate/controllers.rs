@@ -34,12 +34,23 @@ pub(super) fn problems(model: &Model, index: usize, controller: &Controller) -> 
 /// Inputs that must not be what a controller may set them to: a damping is not negative. Asked of a good model.
 pub(crate) fn settings_problems(model: &Model) -> Vec<Problem> {
     let one = || Rational::from_integer(1.into());
-    let mut found = Vec::new();
+    let (mut found, followed) = (Vec::new(), model.followed_inputs());
     for (index, controller) in model.controllers.iter().enumerate() {
         let limits =
             controller.limits.as_ref().map(|limits| limits.each_ref().map(|limit| model.exact(limit)));
         let extremes = limits.unwrap_or_else(|| [-one(), one()]);
         for input in &controller.inputs {
+            if let Some((owner, _)) = followed.iter().find(|(_, inputs)| inputs.contains(input)) {
+                let place = Place { owner: Owner::Controller(index), key: "inputs" };
+                let (name, input) = (&controller.name, &model.inputs[*input].name);
+                found.push(Problem::new(
+                    place,
+                    format!("controller `{name}` cannot set the input `{input}`: the motion of `{owner}` follows it"),
+                    "would make it jump",
+                    "let it set the value of a motor in place of the driver",
+                ));
+                continue;
+            }
             let refusal = extremes.iter().find_map(|value| model.check_input(*input, value).err());
             if let Some(words) = refusal {
                 let place = Place { owner: Owner::Controller(index), key: "inputs" };

@@ -255,7 +255,7 @@ fn find(
                 ("contact", "vary a parameter that the contact's numbers are written with")
             }
             SetterKind::Lines => {
-                ("motion of", "vary something else: the rows of its table are what they are")
+                ("motion of", "vary something else: what a motion goes by is known before it begins")
             }
         };
         let message = format!("the {what} `{name}` sets this input");

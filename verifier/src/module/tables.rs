@@ -40,7 +40,11 @@ pub fn of_model(model: &Model) -> Vec<&Spline> {
 
 fn collect<'m>(motion: &'m Motion, tables: &mut Vec<&'m Spline>) {
     match motion {
-        Motion::Polynomial(_) | Motion::Sinusoid { .. } | Motion::Lines(_) | Motion::Formula(_) => {}
+        Motion::Polynomial(_)
+        | Motion::Sinusoid { .. }
+        | Motion::Lines(_)
+        | Motion::Formula(_)
+        | Motion::Input(_) => {}
         Motion::Sum(parts) | Motion::Product(parts) => parts.iter().for_each(|part| collect(part, tables)),
         Motion::Table(table) => tables.push(table),
     }

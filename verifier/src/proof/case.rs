@@ -78,6 +78,14 @@ impl<'a> Case<'a> {
         self.model.turn_references().iter().position(|turn| *turn == on)
     }
 
+    /// How fast an input changes that a motion follows.
+    pub fn rate_of_input(&self, index: usize) -> Option<Term<'a>> {
+        let followed = self.model.followed_inputs().into_iter();
+        let mut next =
+            followed.flat_map(|(_, [place, rate, acceleration])| [(place, rate), (rate, acceleration)]);
+        next.find(|(of, _)| *of == index).map(|(_, by)| self.point.inputs[by])
+    }
+
     /// Number of bodies that have coordinates.
     pub fn n_bodies(&self) -> usize {
         self.model.coordinate_bodies().len()

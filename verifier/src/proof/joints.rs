@@ -52,6 +52,7 @@ impl<'c, 'a> Motion<'c, 'a> {
             case.run_along("to_maximal", case.given(&case.point), &|source| match source {
                 Source::Joint(k) => derivative.get(k).copied(),
                 Source::Time => Some(one),
+                Source::Input(k) => case.rate_of_input(k),
                 _ => None,
             })?;
         let maximal = Point { state, ..case.point.clone() };
@@ -225,6 +226,7 @@ pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
         Source::State(k) => rates.get(k).copied().or_else(|| any(k)),
         Source::Joint(k) => Some(next(k)),
         Source::Time => Some(one),
+        Source::Input(k) => case.rate_of_input(k),
         _ => None,
     })?;
     for place in &layout.places {

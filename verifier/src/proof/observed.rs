@@ -88,6 +88,7 @@ pub fn frame_biases<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let [state, rates] = case.run_along("to_maximal", case.given(&case.point), &|source| match source {
         Source::Joint(k) => Some(if k < layout.n_coordinates { moved[k] } else { zero }),
         Source::Time => Some(one),
+        Source::Input(k) => case.rate_of_input(k),
         _ => None,
     })?;
     let maximal = Point { state, ..case.point.clone() };

@@ -40,6 +40,14 @@ impl<F: Field> Scope<'_, F> {
                 let u = t - &from;
                 place + rate * &u + &self.half * &(acceleration * &(&u * &u))
             }
+            Motion::Input(inputs) => {
+                let [place, rate, acceleration] = inputs.map(|index| self.point.inputs[index].clone());
+                // It moves where time does.
+                match t.rate {
+                    Some(_) => Jet { value: place, rate: Some(rate), second: Some(acceleration) },
+                    None => Jet::constant(place),
+                }
+            }
             Motion::Formula(formula) => {
                 let see = |seen| (seen == Seen::Time).then(|| t.clone());
                 formula::value(model, self, &see, &formula.text)?
