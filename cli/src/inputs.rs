@@ -4,7 +4,7 @@ use crate::args::InputSetting;
 use crate::failure::Failure;
 use crate::{contacts, controllers, files, paths, words};
 use gyro_model::{Model, Rational};
-use gyro_runner::{Between, Input};
+use gyro_runner::{Approach, Between, Input};
 use std::path::Path;
 
 /// The inputs that the command line gives.
@@ -64,6 +64,23 @@ pub(crate) fn inputs(model: &Model, given: &[(String, InputSetting)]) -> Result<
         }
     }
     Ok(inputs)
+}
+
+/// Steps of fixed length hold inputs: what a motion follows would be at rest, and jump.
+pub(crate) fn refuse_held_motions(
+    model: &Model,
+    inputs: &[Input],
+    approach: &Approach,
+) -> Result<(), Failure> {
+    let moves = |input: &&Input| input.rows.len() > 1 && paths::followed(model, input.index).is_some();
+    match inputs.iter().find(moves).filter(|_| approach.tolerance.is_none()) {
+        None => Ok(()),
+        Some(input) => Err(Failure::Usage(format!(
+            "a motion follows the input `{}`, which steps of fixed length hold: choose a method with error control, such \
+             as --integrator dop853",
+            model.inputs[input.index].name
+        ))),
+    }
 }
 
 /// Has motions start where the inputs that they follow do.

@@ -71,6 +71,7 @@ impl Scene {
         if let Some(words) = refusal(&offers, &settings, &approach, args) {
             return Err(Failure::Usage(words));
         }
+        inputs::refuse_held_motions(&model, &inputs, &approach)?;
         let assembled = model
             .assemble()
             .map_err(|e| Failure::Usage(format!("{}: {e}: {}", args.model.display(), e.help())))?;

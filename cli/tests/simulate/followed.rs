@@ -91,8 +91,8 @@ fn runs_start_where_the_road_does() {
     fs::write(folder.0.join("road.csv"), "0,0.1\n1,0.3\n").unwrap();
     for (input, t_end, expected) in [
         ("road=0.1", "0.5", [0.2, 0.0]),
-        ("road=road.csv", "0.5", [0.0, -0.2]),
-        ("road=road.csv", "2", [-0.3, -0.2]),
+        ("road=road.csv", "0.5", [0.1, -0.2]),
+        ("road=road.csv", "2", [-0.2, -0.2]),
     ] {
         for options in RUNS {
             let run = json(&folder, &[&["page.toml", "--input", input, "--t-end", t_end], options].concat());
@@ -109,8 +109,13 @@ fn roads_with_corners_and_derivatives_alone_are_refused() {
     let folder = folder();
     fs::write(folder.0.join("page.toml"), CAR).unwrap();
     fs::write(folder.0.join("road.csv"), "0,0.1\n1,0.3\n2,0.3\n").unwrap();
-    for (input, words) in [("road=linear:road.csv", "jump"), ("road_rate=1", "give `road`")] {
-        let output = simulate(&folder, &["page.toml", "--input", input]);
+    let cases: [(&str, &[&str], &str); 3] = [
+        ("road=linear:road.csv", &[], "jump"),
+        ("road_rate=1", &[], "give `road`"),
+        ("road=road.csv", &["--integrator", "rk4"], "error control"),
+    ];
+    for (input, options, words) in cases {
+        let output = simulate(&folder, &[&["page.toml", "--input", input], options].concat());
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(!output.status.success() && said.contains(words), "{input}: {said}");
     }

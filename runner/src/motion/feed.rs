@@ -11,18 +11,22 @@ use crate::Input;
 use crate::touch::Touch;
 use gyro_sim::contact::{Forced, joint_accelerations};
 use gyro_sim::{Clearance, Correction, Error, Jacobian, Joint, JointSpace, Mechanism, Ode, Scalar};
-use std::cell::{Ref, RefCell};
+use std::cell::{OnceCell, Ref, RefCell};
 use std::ops::Range;
+use std::rc::Rc;
 
 /// Equations, perhaps with inputs that follow the time.
 pub(super) struct Fed<L, M: Mechanism> {
     pub(super) lens: L,
-    feed: Option<Box<Feed<M>>>,
+    feed: Shared<M>,
 }
 
-struct Feed<M: Mechanism> {
+/// What equations and their correction share.
+pub(super) type Shared<M> = Rc<OnceCell<Feed<M>>>;
+
+pub(super) struct Feed<M: Mechanism> {
     mechanism: RefCell<M>,
-    pieces: Vec<Piece<M::Scalar>>,
+    pieces: RefCell<Vec<Piece<M::Scalar>>>,
     /// Of contacts, the inputs that are their forces, and where the reactions of their friction are among the outputs.
     forces: Vec<usize>,
     reactions: Vec<Option<usize>>,
@@ -52,7 +56,8 @@ impl<M: Mechanism> Feed<M> {
     /// The mechanism with its inputs at a time.
     fn at(&self, t: M::Scalar) -> Ref<'_, M> {
         let mut mechanism = self.mechanism.borrow_mut();
-        for (index, [value, _]) in self.moving(t) {
+        for piece in &*self.pieces.borrow() {
+            let (index, [value, _]) = piece.at(t);
             mechanism.set_input(index, value);
         }
         drop(mechanism);
@@ -67,40 +72,42 @@ impl<M: Mechanism> Feed<M> {
         self.at(t)
     }
 
-    fn moving(&self, t: M::Scalar) -> impl Iterator<Item = Moving<M::Scalar>> {
-        self.pieces.iter().map(move |piece| piece.at(t))
+    fn moving(&self, t: M::Scalar) -> Vec<Moving<M::Scalar>> {
+        self.pieces.borrow().iter().map(|piece| piece.at(t)).collect()
     }
 }
 
 impl<L, M: Mechanism> Fed<L, M> {
     /// Equations with the inputs that the mechanism has.
     pub(super) fn of(lens: L) -> Self {
-        Self { lens, feed: None }
+        Self { lens, feed: Shared::default() }
+    }
+
+    /// Their correction.
+    pub(super) fn corrected<C>(&self, correction: C) -> Around<C, M> {
+        Around { correction, feed: Rc::clone(&self.feed) }
     }
 
     /// From now on the inputs follow their course, in a copy of the mechanism.
     pub(super) fn follow(&mut self, mechanism: M) {
-        self.feed = Some(Box::new(Feed {
-            mechanism: RefCell::new(mechanism),
-            pieces: Vec::new(),
-            forces: Vec::new(),
-            reactions: Vec::new(),
-        }));
+        self.force(mechanism, &[]);
     }
 
     /// From now on these inputs are forces of contacts, set in a copy of the mechanism.
     pub(super) fn force(&mut self, mechanism: M, touches: &[Touch]) {
-        self.feed = Some(Box::new(Feed {
+        let feed = Feed {
             mechanism: RefCell::new(mechanism),
-            pieces: Vec::new(),
+            pieces: RefCell::default(),
             forces: touches.iter().map(|touch| touch.input).collect(),
             reactions: touches.iter().map(|touch| touch.reaction).collect(),
-        }));
+        };
+        // A motion is begun once.
+        let _ = self.feed.set(feed);
     }
 
     /// The inputs that are forces of contacts.
     pub(super) fn forces(&self) -> &[usize] {
-        self.feed.as_ref().map_or(&[], |feed| &feed.forces)
+        self.feed.get().map_or(&[], |feed| &feed.forces)
     }
 
     /// An input changes that follows no course.
@@ -109,15 +116,16 @@ impl<L, M: Mechanism> Fed<L, M> {
         L: Lens<M>,
     {
         self.lens.set_input(index, value);
-        if let Some(feed) = &mut self.feed {
-            feed.mechanism.get_mut().set_input(index, M::Scalar::constant(value));
+        if let Some(feed) = self.feed.get() {
+            feed.mechanism.borrow_mut().set_input(index, M::Scalar::constant(value));
         }
     }
 
     /// A knot has been reached: from here on other pieces hold.
     pub(super) fn enter(&mut self, course: &Course, t: f64) {
-        if let Some(feed) = &mut self.feed {
-            feed.pieces = course.inputs().iter().map(|input| Piece::new(input, t)).collect();
+        if let Some(feed) = self.feed.get() {
+            let pieces = course.inputs().iter().map(|input| Piece::new(input, t));
+            feed.pieces.replace(pieces.collect());
         }
     }
 }
@@ -127,7 +135,7 @@ impl<L: Ode<M, Scalar = M::Scalar>, M: Mechanism> Ode<M> for Fed<L, M> {
     type State = L::State;
 
     fn derivative(&self, mechanism: &M, t: M::Scalar, y: &L::State, dy: &mut L::State) {
-        match &self.feed {
+        match self.feed.get() {
             None => self.lens.derivative(mechanism, t, y, dy),
             Some(feed) => self.lens.derivative(&feed.at(t), t, y, dy),
         }
@@ -152,7 +160,7 @@ impl<M: JointSpace<Joints: 'static> + 'static> Forced<M> for Fed<Joint, M> {
     }
 
     fn forced(&self, mechanism: &M, t: M::Scalar, x: &M::Joints, forces: &[M::Scalar], dx: &mut M::Joints) {
-        let Some(feed) = &self.feed else { return self.derivative(mechanism, t, x, dx) };
+        let Some(feed) = self.feed.get() else { return self.derivative(mechanism, t, x, dx) };
         let mechanism = feed.under(t, forces);
         self.lens.derivative(&*mechanism, t, x, dx);
     }
@@ -165,7 +173,7 @@ impl<M: JointSpace<Joints: 'static> + 'static> Forced<M> for Fed<Joint, M> {
         forces: &[M::Scalar],
         dx: &mut M::Joints,
     ) {
-        match &self.feed {
+        match self.feed.get() {
             None => joint_accelerations(mechanism, t, x, dx),
             Some(feed) => joint_accelerations(&*feed.under(t, forces), t, x, dx),
         }
@@ -179,7 +187,7 @@ impl<M: JointSpace<Joints: 'static> + 'static> Forced<M> for Fed<Joint, M> {
         forces: &[M::Scalar],
         out: &mut [[M::Scalar; 3]],
     ) {
-        let Some(feed) = &self.feed else { return };
+        let Some(feed) = self.feed.get() else { return };
         let mechanism = feed.under(t, forces);
         let (mut y, mut outputs) = (mechanism.start(), mechanism.buffers().outputs);
         mechanism.to_maximal(t, x, &mut y);
@@ -196,38 +204,51 @@ impl<L: MovingInputs<M>, M: Mechanism> Jacobian<M> for Fed<L, M> {
     type Matrix = L::Matrix;
 
     fn jacobian(&self, mechanism: &M, t: M::Scalar, y: &L::State, dfdy: &mut L::Matrix, dfdt: &mut L::State) {
-        match &self.feed {
+        match self.feed.get() {
             None => self.lens.jacobian(mechanism, t, y, dfdy, dfdt),
             Some(feed) => {
-                let inputs: Vec<_> = feed.moving(t).collect();
+                let inputs = feed.moving(t);
                 self.lens.moving_jacobian(&feed.at(t), &inputs, (t, y), dfdy, dfdt);
             }
         }
     }
 }
 
-/// A correction of the equations by themselves: constraints do not depend on inputs.
-pub(super) struct Around<C>(pub(super) C);
+/// A correction of the equations, which sees the inputs that motions follow as the equations do.
+pub(super) struct Around<C, M: Mechanism> {
+    correction: C,
+    feed: Shared<M>,
+}
 
-impl<L, M, C> Correction<Fed<L, M>, M> for Around<C>
+impl<C, M: Mechanism> Around<C, M> {
+    /// What is done with the mechanism as it is at a time.
+    fn at<R>(&mut self, t: M::Scalar, mechanism: &M, what: impl FnOnce(&mut C, &M) -> R) -> R {
+        match self.feed.get() {
+            None => what(&mut self.correction, mechanism),
+            Some(feed) => what(&mut self.correction, &feed.at(t)),
+        }
+    }
+}
+
+impl<L, M, C> Correction<Fed<L, M>, M> for Around<C, M>
 where
     L: Ode<M, Scalar = M::Scalar>,
     M: Mechanism,
     C: Correction<L, M>,
 {
     fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut L::State) -> Result<(), Error> {
-        self.0.correct(mechanism, t, y)
+        self.at(t, mechanism, |correction, mechanism| correction.correct(mechanism, t, y))
     }
     fn refer_turns(&mut self, mechanism: &M, t: M::Scalar, y: &mut L::State) {
-        self.0.refer_turns(mechanism, t, y);
+        self.correction.refer_turns(mechanism, t, y);
     }
     fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &L::State) -> M::Scalar {
-        self.0.violation(mechanism, t, y)
+        self.at(t, mechanism, |correction, mechanism| correction.violation(mechanism, t, y))
     }
     fn switches(&self) -> u64 {
-        self.0.switches()
+        self.correction.switches()
     }
     fn clearance(&self, mechanism: &M, t: M::Scalar, y: &L::State) -> Option<Clearance<M::Scalar>> {
-        self.0.clearance(mechanism, t, y)
+        self.correction.clearance(mechanism, t, y)
     }
 }

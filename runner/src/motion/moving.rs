@@ -47,7 +47,7 @@ where
     Box::new(Adaptive(solver(lens, method, correction, approach, y), None))
 }
 
-type Solving<L, M, S, A, C> = Solver<Fed<L, M>, S, <M as Mechanism>::Scalar, A, Around<C>>;
+type Solving<L, M, S, A, C> = Solver<Fed<L, M>, S, <M as Mechanism>::Scalar, A, Around<C, M>>;
 
 fn solver<L, M: Mechanism<Scalar: Real>, S, A, C>(
     lens: L,
@@ -59,7 +59,9 @@ fn solver<L, M: Mechanism<Scalar: Real>, S, A, C>(
 where
     S: Clone + Debug + AsRef<[M::Scalar]> + AsMut<[M::Scalar]>,
 {
-    Solver::with_correction(Fed::of(lens), method, Around(correction), Scalar::constant(0.0), y)
+    let equations = Fed::of(lens);
+    let correction = equations.corrected(correction);
+    Solver::with_correction(equations, method, correction, Scalar::constant(0.0), y)
         .with_control(control(approach))
 }
 

@@ -16,8 +16,14 @@ use gyro_sim::{Correction, Error, Joint, JointPlace, JointSpace, Real, Scalar, S
 /// The contacts of a run; those that it does not have do nothing.
 const MOST: usize = Touch::MOST;
 
-type Touching<M, A, C> =
-    Hybrid<Fed<Joint, M>, <M as JointSpace>::Joints, <M as gyro_sim::Mechanism>::Scalar, A, Around<C>, MOST>;
+type Touching<M, A, C> = Hybrid<
+    Fed<Joint, M>,
+    <M as JointSpace>::Joints,
+    <M as gyro_sim::Mechanism>::Scalar,
+    A,
+    Around<C, M>,
+    MOST,
+>;
 
 /// A motion with contacts from a joint state on.
 pub(super) fn touching<M, C>(
@@ -63,7 +69,8 @@ where
     let mut equations = Fed::of(Joint);
     equations.force(mechanism.clone(), touches);
     let zero = Scalar::constant(0.0);
-    let hybrid = Hybrid::with_correction(equations, contacts, method, Around(correction), zero, x);
+    let correction = equations.corrected(correction);
+    let hybrid = Hybrid::with_correction(equations, contacts, method, correction, zero, x);
     Ok(hybrid.with_control(control(approach)))
 }
 
