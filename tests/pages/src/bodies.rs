@@ -285,8 +285,19 @@ impl Page {
         )
     }
 
-    /// A motion, with numbers and parameters.
+    /// A motion, which may follow an input. Other dice than those of the rest decide on that.
     pub fn motion(&mut self, depth: usize) -> String {
+        let own = self.own_motion(depth);
+        if depth == 0 || !self.followers.once_in(6) {
+            return own;
+        }
+        let (form, followed) =
+            self.followers.pick(&[("sum", "\"followed\""), ("product", "{ sum = [1, \"-followed\"] }")]);
+        format!("{{ {form} = [{own}, {followed}] }}")
+    }
+
+    /// A motion, with numbers and parameters.
+    fn own_motion(&mut self, depth: usize) -> String {
         let number = |page: &mut Self| {
             let number = page.dice.signed();
             page.tunable(number)

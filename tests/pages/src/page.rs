@@ -67,6 +67,8 @@ pub struct Page {
     pub ways: Option<Dice>,
     /// Decides on armatures.
     pub rotors: Dice,
+    /// Decides on motions that follow an input.
+    pub followers: Dice,
     pub name: String,
     pub parameters: Vec<(String, String)>,
     /// Those that are computed from others.
@@ -106,6 +108,7 @@ impl Page {
             dice,
             ways: None,
             rotors: Dice::new(!seed),
+            followers: Dice::new(seed.rotate_left(43)),
             name: format!("page_{seed}"),
             parameters: Vec::new(),
             derived: Vec::new(),
@@ -198,7 +201,12 @@ impl Page {
         let mut text = format!("format = 1\nname = {:?}\ngravity = {}\n", self.name, list(&self.gravity));
         // What is computed may stand before what it is computed from.
         let parameters: Vec<_> = self.derived.iter().chain(&self.parameters).cloned().collect();
-        for (table, entries) in [("parameters", &parameters), ("inputs", &self.inputs)] {
+        let mut inputs = self.inputs.clone();
+        let follows = |text: &String| text.contains("followed\"");
+        if follows(&self.elements) || self.bodies.iter().any(|(_, body)| follows(body)) {
+            inputs.push(("followed".to_owned(), "0".to_owned()));
+        }
+        for (table, entries) in [("parameters", &parameters), ("inputs", &inputs)] {
             if !entries.is_empty() {
                 let _ = writeln!(text, "\n[{table}]");
                 entries.iter().for_each(|(name, value)| text += &format!("{name} = {value}\n"));
