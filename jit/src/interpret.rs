@@ -6,7 +6,9 @@ use crate::engine::{
 use crate::native::call;
 use gyro_codegen::tape::{At, Direction, Loop, Operation, Place, Tape};
 use gyro_codegen::{Kernel, Scheduled, Variable};
-use gyro_sim::Scalar;
+use gyro_model::Spline;
+use gyro_program::elementary::Function;
+use gyro_sim::{Scalar, spline};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -79,7 +81,8 @@ impl<T: Scalar> Engine<T> for Interpreter<T> {
             write_curves(scheduled, arguments.t, work);
         }
         let (tape, shape) = (&described.tape, &known.shape);
-        let mut run = Run { layout: self.layout, shape, arguments, work, fixed };
+        let curves = &scheduled.curves;
+        let mut run = Run { layout: self.layout, curves, shape, arguments, work, fixed };
         for each in &tape.loops {
             run.operations(&tape.outside, (each.after, None), numbers);
             run.fixed.extend(each.fixed.iter().map(|&place| number(numbers, place)));
@@ -100,6 +103,7 @@ impl<T: Scalar> Engine<T> for Interpreter<T> {
 /// A kernel that is being computed.
 struct Run<'a, T> {
     layout: Layout,
+    curves: &'a [Spline],
     shape: &'a Shape,
     arguments: Arguments<'a, T>,
     work: &'a mut Vec<T>,
@@ -142,6 +146,10 @@ impl<T: Scalar> Run<'_, T> {
                 Operation::Divide(a, b) => at(a) / at(b),
                 Operation::Negate(a) => -at(a),
                 Operation::Fused(a, b, c) => T::fused(at(a), at(b), at(c)),
+                Operation::Call(Function::Curve { curve, order }, [at_x, _]) => {
+                    let Spline { knots, pieces, .. } = &self.curves[usize::from(*curve)];
+                    spline::derivative(knots, pieces, usize::from(*order), at(at_x))
+                }
                 Operation::Call(function, operands) => call(*function, operands.map(|place| at(&place))),
             };
             numbers.push(value);

@@ -112,7 +112,7 @@ fn polynomial(coefficients: &[f64], t: f64) -> [f64; 3] {
 }
 
 /// A spline, which goes on as a straight line beyond its ends.
-fn table(knots: &[f64], pieces: &[[f64; 4]], t: f64) -> [f64; 3] {
+pub(crate) fn table(knots: &[f64], pieces: &[[f64; 4]], t: f64) -> [f64; 3] {
     let inside = t.clamp(knots[0], knots[pieces.len()]);
     let piece = knots[1..pieces.len()].partition_point(|&knot| knot <= inside);
     let [value, slope, bend] = polynomial(&pieces[piece], inside - knots[piece]);

@@ -65,7 +65,8 @@ impl<'m> System<'m> {
         self.graph.add(place, way)
     }
 
-    fn table(&mut self, spline: &'m Spline) -> usize {
+    /// The place of a table among all.
+    pub fn table(&mut self, spline: &'m Spline) -> usize {
         if let Some(known) = self.tables.iter().position(|known| *known == spline) {
             return known;
         }

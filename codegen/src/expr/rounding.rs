@@ -8,7 +8,6 @@
 
 use crate::expr::by_expr::ByExpr;
 use crate::expr::domains::POINTS;
-use crate::expr::elementary;
 use crate::expr::graph::{ExprId, Graph, Node};
 use gyro_program::elementary::Function;
 
@@ -126,8 +125,8 @@ impl<'g> Step<'g> {
             Node::Neg(_) => (-x, [-1.0, 0.0]),
             Node::Recip(_) => (x.recip(), [-x.recip().powi(2), 0.0]),
             Node::Call(function, _) => {
-                let value = elementary::value(*function, [x, y]);
-                (value, elementary::slopes_at(*function, [x, y], value))
+                let value = graph.domains.call(*function, [x, y]);
+                (value, graph.domains.slopes(*function, [x, y], value))
             }
         };
         Evaluated { value, slopes }

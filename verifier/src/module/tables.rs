@@ -1,4 +1,4 @@
-//! Tables of prescribed motions: the constants at the head of a module.
+//! Tables of prescribed motions and of curves: the constants at the head of a module.
 
 use crate::refusal::Refusal;
 use gyro_model::{Model, Motion, Spline};
@@ -27,7 +27,7 @@ pub fn read(model: &Model, text: &str) -> Result<(Vec<Spline>, String), Refusal>
     Ok((pairs.collect::<Result<_, _>>()?, emptied))
 }
 
-/// All tables that motions of the model follow.
+/// All tables that motions of the model follow, and those of its curves.
 pub fn of_model(model: &Model) -> Vec<&Spline> {
     let mut tables = Vec::new();
     model.drivers.iter().for_each(|driver| collect(&driver.motion, &mut tables));
@@ -35,6 +35,7 @@ pub fn of_model(model: &Model) -> Vec<&Spline> {
         motion.translation.iter().for_each(|m| collect(m, &mut tables));
         motion.rotations.iter().for_each(|(_, angle)| collect(angle, &mut tables));
     }
+    tables.extend(model.curves.iter().map(|curve| &curve.spline));
     tables
 }
 
