@@ -147,7 +147,7 @@ impl Compiler {
         let n_curves = N_ORDERS * curves.len();
         for number in 0..N_FUNCTIONS + n_curves {
             let signature = width.of_function(target.default_call_conv, target.pointer_type(), number);
-            let linkage = if number < N_FUNCTIONS { Linkage::Import } else { Linkage::Local };
+            let linkage = if number < N_FUNCTIONS { Linkage::Import } else { Linkage::Preemptible };
             functions.push(module.declare_function(&symbol(number), linkage, &signature)?);
         }
         let context = module.make_context();

@@ -33,7 +33,7 @@ fn one(reader: &mut Reader<'_>, section: &Section<'_>, name: &str) -> Option<Cur
         }
         let item = section.get("points")?;
         let points = points(reader, item)?;
-        let source = format!("points of `{name}`");
+        let source = name.to_owned();
         return match Curve::through((name.to_owned(), source), &points, joined?, beyond?) {
             Ok(curve) => Some(curve),
             Err(reason) => {
@@ -112,8 +112,8 @@ pub(super) fn refuse_kinks(reader: &mut Reader<'_>, item: Item<'_>, formula: &Fo
     let kinked = formula.curves().map(|curve| &reader.curves[curve]).find(|curve| !curve.is_smooth());
     let Some(Curve { name, joined, .. }) = kinked else { return };
     let (key, help) = match joined {
-        Joined::Smooth => ("beyond", "write beyond = \"line\" or \"error\" there"),
-        _ => ("between", "write between = \"smooth\" there"),
+        Joined::Smooth => ("beyond", "give the curve beyond = \"line\" or \"error\""),
+        _ => ("between", "give the curve between = \"smooth\""),
     };
     let words = [
         format!(
