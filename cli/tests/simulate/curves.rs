@@ -1,6 +1,6 @@
 //! Curves in formulas, against the same equations typed and integrated here with curves of their own.
 
-use crate::laws::{ROTOR, RUNS, end, integrated_one, run};
+use crate::laws::{ROTOR, RUNS, end, example, integrated_one, joint, run};
 use crate::support::{Folder, json, simulate};
 use std::fmt::Write as _;
 use std::fs;
@@ -78,13 +78,13 @@ fn a_potential_acts_by_the_slope_of_its_curve() {
     let spline = progressive();
     let expected = integrated_one([0.4, 1.5], 0.8, |x, v, _| {
         let [value, slope, _] = spline.at(x);
-        let drag = spline.at(v)[0];
-        (-value * slope - 0.05 * (2.0 * v * drag + v * v * spline.at(v)[1])) / 0.5
+        let [drag, steepness, _] = spline.at(v);
+        (-value * slope - 0.02 * drag * steepness) / 0.5
     });
     let page = format!(
         "{ROTOR}[[curve]]\nname = \"f\"\npoints = {POINTS}\n[[force]]\nname = \"well\"\nkind = \"potential\"\n\
          energy = \"0.5*f(turn)^2\"\n[[force]]\nname = \"loss\"\nkind = \"dissipation\"\n\
-         power = \"0.1*f(turn rate)*turn rate^2\"\n"
+         power = \"0.02*f(turn rate)^2\"\n"
     );
     for options in RUNS {
         let run = run(&page, options, "0.8");
@@ -255,4 +255,28 @@ fn a_long_table_takes_a_search_and_no_code() {
     let expected = integrated_one([0.4, 1.5], 0.5, |x, _, _| -(3.0 * x + x.powi(3)) / 0.5);
     let run = json(&folder, &["page.toml", "--t-end", "0.5", "--tolerance", "1e-10"]);
     near(&run, expected, 1e-6, "a long table");
+}
+
+#[test]
+fn the_measured_spring_moves_as_its_equation_does() {
+    let spring = Natural::through(&[
+        (-0.08, -2600.0),
+        (-0.05, -1050.0),
+        (-0.02, -330.0),
+        (0.0, 0.0),
+        (0.02, 330.0),
+        (0.05, 1050.0),
+        (0.08, 2600.0),
+        (0.1, 5000.0),
+    ]);
+    let damper = |v: f64| match v {
+        v if v < -0.2 => -180.0 + 400.0 * (v + 0.2),
+        v if v < 0.0 => 900.0 * v,
+        v if v < 0.2 => 450.0 * v,
+        v => 90.0 + 200.0 * (v - 0.2),
+    };
+    let expected = integrated_one([0.09, 0.0], 0.6, |x, v, _| -(spring.at(x)[0] + damper(v)) / 25.0 - 9.81);
+    let found = joint(&example("progressive_spring", "0.6"), "travel");
+    let is_near = |k: usize| (found[k] - expected[k]).abs() < 1e-7;
+    assert!(is_near(0) && is_near(1), "{found:?} {expected:?}");
 }

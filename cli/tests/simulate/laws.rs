@@ -243,14 +243,14 @@ fn what_has_no_value_ends_a_run() {
 }
 
 /// A run of one of the examples, to 1e-12.
-fn example(name: &str, t_end: &str) -> Value {
+pub(crate) fn example(name: &str, t_end: &str) -> Value {
     let folder = Folder::new(name);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/laws").join(format!("{name}.toml"));
     let page = path.display().to_string();
     json(&folder, &[&page, "--t-end", t_end, "--integrator", "dop853", "--tolerance", "1e-12"])
 }
 
-fn joint(run: &Value, name: &str) -> [f64; 2] {
+pub(crate) fn joint(run: &Value, name: &str) -> [f64; 2] {
     ["position", "rate"].map(|key| run["joints"][name][key].as_f64().unwrap())
 }
 
