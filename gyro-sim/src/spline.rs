@@ -13,8 +13,6 @@
 //! assert_eq!(4.0.spline(&knots, &pieces), [-3.0, -1.5, 0.0]);
 //! ```
 
-use crate::scalar::Scalar;
-
 /// The cubic that holds at a time, and the knot from which it counts; a straight line beyond the ends, zero for no
 /// pieces.
 ///
@@ -44,16 +42,6 @@ pub fn evaluate(knots: &[f64], pieces: &[[f64; 4]], t: f64) -> [f64; 3] {
 /// The third derivative at a time, which jumps at knots: there it is that of the piece that begins.
 pub fn third(knots: &[f64], pieces: &[[f64; 4]], t: f64) -> f64 {
     6.0 * piece(knots, pieces, t).1[3]
-}
-
-/// A derivative of a curve by its order, in any number type: the value is of order zero, and derivatives after the third
-/// one are zero.
-pub fn derivative<T: Scalar>(knots: &[f64], pieces: &[[f64; 4]], order: usize, x: T) -> T {
-    match x.spline(knots, pieces).get(order) {
-        Some(&derivative) => derivative,
-        None if order == 3 => x.spline_third(knots, pieces),
-        None => T::constant(0.0),
-    }
 }
 
 fn cubic([c0, c1, c2, c3]: &[f64; 4], u: f64) -> [f64; 3] {

@@ -1,14 +1,14 @@
 //! Kernels by interpretation of their tapes: in any number type, where speed does not matter.
 
 use crate::engine::{
-    Arguments, Array, Engine, Input, Layout, NotCompiled, Shape, reads_curves, write_curves,
+    self, Arguments, Array, Engine, Input, Layout, NotCompiled, Shape, reads_curves, write_curves,
 };
 use crate::native::call;
 use gyro_codegen::tape::{At, Direction, Loop, Operation, Place, Tape};
 use gyro_codegen::{Kernel, Scheduled, Variable};
 use gyro_model::Spline;
 use gyro_program::elementary::Function;
-use gyro_sim::{Scalar, spline};
+use gyro_sim::Scalar;
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -147,8 +147,7 @@ impl<T: Scalar> Run<'_, T> {
                 Operation::Negate(a) => -at(a),
                 Operation::Fused(a, b, c) => T::fused(at(a), at(b), at(c)),
                 Operation::Call(Function::Curve { curve, order }, [at_x, _]) => {
-                    let Spline { knots, pieces, .. } = &self.curves[usize::from(*curve)];
-                    spline::derivative(knots, pieces, usize::from(*order), at(at_x))
+                    engine::curve(&self.curves[usize::from(*curve)], usize::from(*order), at(at_x))
                 }
                 Operation::Call(function, operands) => call(*function, operands.map(|place| at(&place))),
             };

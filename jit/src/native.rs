@@ -1,9 +1,10 @@
 //! The number types that there is machine code for, and the elementary functions that it calls.
 
+use crate::engine;
 use gyro_model::Spline;
 use gyro_program::elementary::Function;
+use gyro_sim::Scalar;
 use gyro_sim::lanes::f64x2;
-use gyro_sim::{Scalar, spline};
 
 /// A number type that Cranelift compiles for: `f32`, `f64`, and `f64x2`, two lanes with the bits of two runs in `f64`.
 pub trait Native: Scalar + Send + Sync + 'static {
@@ -74,13 +75,13 @@ functions! {
 
 /// A derivative of a curve by its order.
 extern "C-unwind" fn curve<T: Scalar>(x: T, curve: &Spline, order: usize) -> T {
-    spline::derivative(&curve.knots, &curve.pieces, order, x)
+    engine::curve(curve, order, x)
 }
 
 /// That of a pack, which takes its place.
 extern "C" fn curve_of_pack(packs: &mut [[f64; 2]; 2], curve: &Spline, order: usize) {
     let x = f64x2::new(packs[0]);
-    packs[0] = spline::derivative(&curve.knots, &curve.pieces, order, x).to_array();
+    packs[0] = engine::curve(curve, order, x).to_array();
 }
 
 /// Sine and cosine, which come back in two registers.

@@ -135,9 +135,9 @@ fn line(pair: &[(f64, f64)]) -> [f64; 4] {
     [pair[0].1, (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0), 0.0, 0.0]
 }
 
-/// Cubics that keep what the points do (F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984)): the slope at
-/// a point is zero where the chords beside it differ in sign, and else their weighted harmonic mean, so that no cubic
-/// leaves the region of F. N. Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17 (1980).
+/// Cubics that keep what the points do (F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984)): the slope
+/// at a point is zero where the chords beside it differ in sign, and else their weighted harmonic mean, so that no
+/// cubic leaves the region of F. N. Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17 (1980).
 fn monotone(points: &[(f64, f64)]) -> Vec<[f64; 4]> {
     let widths: Vec<f64> = points.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
     let chords: Vec<f64> = points.windows(2).map(|pair| line(pair)[1]).collect();

@@ -19,8 +19,15 @@ pub(crate) enum Amount<T> {
     Constant(T),
     /// Index into [`crate::Lowered::inputs`], and a factor of 1 or −1.
     Input(usize, T),
-    /// A formula, with what stands at each of its operations that has no operands, and the curves that it calls.
-    Formula(Arc<(Formula, Vec<Option<Leaf<T>>>, Curves)>),
+    Formula(Arc<Written<T>>),
+}
+
+/// A formula, with what stands at each of its operations that has no operands, and the curves that it calls.
+#[derive(Clone, Debug)]
+pub(crate) struct Written<T> {
+    formula: Formula,
+    leaves: Vec<Option<Leaf<T>>>,
+    curves: Curves,
 }
 
 /// What a formula begins with.
@@ -91,8 +98,8 @@ impl<T: Number> Amount<T> {
                     Operation::Seen(seen) => Some(Leaf::new(model, parts, *seen)),
                     _ => None,
                 });
-                let curves = Curves::of(model, formula);
-                Self::Formula(Arc::new((Formula::clone(formula), leaves.collect(), curves)))
+                let (leaves, curves) = (leaves.collect(), Curves::of(model, formula));
+                Self::Formula(Arc::new(Written { formula: Formula::clone(formula), leaves, curves }))
             }
             PageNumber::Exact(_) | PageNumber::Parameter { .. } | PageNumber::Computed(_) => {
                 Self::Constant(number(model.value(value)))
@@ -105,7 +112,7 @@ impl<T: Number> Amount<T> {
             Self::Constant(value) => *value,
             Self::Input(index, sign) => now.scene.inputs[*index].1 * *sign,
             Self::Formula(formula) => {
-                let (formula, leaves, curves) = &**formula;
+                let Written { formula, leaves, curves } = &**formula;
                 let leaf = |place: usize| leaves[place].as_ref().map_or(T::zero(), |leaf| leaf.value(now));
                 value(formula, leaf, curves)
             }
@@ -172,7 +179,7 @@ impl<T: Number> Amount<T> {
     /// The derivative of a formula by one of the numbers that it sees, which are independent of one another.
     pub(crate) fn slope(&self, now: &Now<'_, T>, by: Seen) -> T {
         let Self::Formula(formula) = self else { return T::zero() };
-        let (formula, leaves, curves) = &**formula;
+        let Written { formula, leaves, curves } = &**formula;
         let pair = formula.value(|operation, values: &[(T, T)]| {
             Ok::<_, Infallible>(match operation {
                 Operation::Number(_) | Operation::Seen(_) => {

@@ -3,11 +3,8 @@
 //! Times reach to the end of the run, parameters are near their values, rates are small and large, coordinates are
 //! anywhere where the mechanism may be. All is drawn by a fixed hash: a domain is the same on every machine.
 
-use crate::expr::elementary;
 use crate::expr::symbol::Symbol;
 use gyro_model::{Model, Spline, to_f64};
-use gyro_program::elementary::Function;
-use num_traits::Float;
 use rustc_hash::FxHashMap as HashMap;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -79,25 +76,6 @@ impl Domains {
 
     pub fn set_tables(&mut self, tables: &[&Spline]) {
         self.tables = tables.iter().map(|&table| table.clone()).collect();
-    }
-
-    /// The value of a called function; of one operand the second one is of no matter.
-    pub fn call<F: Float>(&self, function: Function, [x, y]: [F; 2]) -> F {
-        let Function::Curve { curve, order } = function else { return elementary::value(function, [x, y]) };
-        let at = self.curves.get(usize::from(curve)).zip(x.to_f64());
-        let value = at.and_then(|(spline, x)| F::from(spline.jet(x)[usize::from(order)]));
-        value.unwrap_or_else(F::nan)
-    }
-
-    /// Its derivatives by both operands, where it has this value.
-    pub fn slopes(&self, function: Function, operands: [f64; 2], value: f64) -> [f64; 2] {
-        match function {
-            Function::Curve { order: Function::LAST_ORDER.., .. } => [0.0, 0.0],
-            Function::Curve { curve, order } => {
-                [self.call(Function::Curve { curve, order: order + 1 }, operands), 0.0]
-            }
-            function => elementary::slopes_at(function, operands, value),
-        }
     }
 
     /// The value of a variable at a point of the domain.

@@ -4,7 +4,8 @@ use crate::expr::graph::{ExprId, Graph};
 use gyro_program::elementary::Function;
 use num_traits::Float;
 
-/// The value at some operands; of one operand the second one is of no matter. Those of curves are with `Domains`.
+/// The value at some operands; of one operand the second one is of no matter. Those of curves are in
+/// `calls`.
 pub fn value<F: Float>(function: Function, [x, y]: [F; 2]) -> F {
     match function {
         Function::Sqrt => x.sqrt(),

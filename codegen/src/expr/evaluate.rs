@@ -1,6 +1,7 @@
 //! Evaluates expressions numerically; shares no code with simplification.
 
 use crate::expr::by_expr::ByExpr;
+use crate::expr::calls;
 use crate::expr::domains::{Domains, between};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
@@ -45,7 +46,7 @@ impl<'g> Program<'g> {
                 Node::Mul(..) => operand(a) * operand(b),
                 Node::Neg(_) => -operand(a),
                 Node::Recip(_) => operand(a).recip(),
-                Node::Call(function, _) => self.domains.call(*function, [operand(a), operand(b)]),
+                Node::Call(function, _) => calls::value(self.domains, *function, [operand(a), operand(b)]),
             };
             values.push(result);
         }

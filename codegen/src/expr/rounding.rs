@@ -7,6 +7,7 @@
 //! the root alone, not on what else has been derived before it.
 
 use crate::expr::by_expr::ByExpr;
+use crate::expr::calls;
 use crate::expr::domains::POINTS;
 use crate::expr::graph::{ExprId, Graph, Node};
 use gyro_program::elementary::Function;
@@ -125,8 +126,8 @@ impl<'g> Step<'g> {
             Node::Neg(_) => (-x, [-1.0, 0.0]),
             Node::Recip(_) => (x.recip(), [-x.recip().powi(2), 0.0]),
             Node::Call(function, _) => {
-                let value = graph.domains.call(*function, [x, y]);
-                (value, graph.domains.slopes(*function, [x, y], value))
+                let value = calls::value(&graph.domains, *function, [x, y]);
+                (value, calls::slopes(&graph.domains, *function, [x, y], value))
             }
         };
         Evaluated { value, slopes }
