@@ -57,6 +57,7 @@ pub(crate) fn call<T: Number>(function: Function, [a, b]: [T; 2]) -> T {
         Function::Floor => Scalar::floor(a),
         Function::When => if_positive(a, b, T::zero()),
         Function::Unless => if_positive(a, T::zero(), b),
+        Function::Curve { .. } => unreachable!("curves are with formulas"),
     }
 }
 

@@ -4,7 +4,7 @@ use crate::args::EventSetting;
 use crate::controllers::seen;
 use crate::failure::Failure;
 use crate::words::{count, number, table};
-use gyro_model::{Direction, Event, Model, Number};
+use gyro_model::{Direction, Event, Model, Number, Spline};
 use gyro_program::elementary::Function;
 use gyro_runner::{Formula, Occurrence, Operation, Watch, What};
 use gyro_sim::Elementary;
@@ -57,6 +57,10 @@ fn formula(model: &Model, of: &gyro_model::Formula) -> Formula {
         Of::Product(a, b) => Operation::Product(*a, *b),
         Of::Quotient(a, b) => Operation::Quotient(*a, *b),
         Of::Power(base, exponent) => Operation::Power(*base, *exponent),
+        Of::Call(Function::Curve { curve, .. }, [at, _]) => {
+            let Spline { knots, pieces, .. } = model.curves[usize::from(*curve)].spline.clone();
+            Operation::Curve { knots, pieces, at: *at }
+        }
         Of::Call(function, operands) => Operation::Call(elementary(*function), *operands),
     };
     Formula(of.operations.iter().map(one).collect())
@@ -64,7 +68,7 @@ fn formula(model: &Model, of: &gyro_model::Formula) -> Formula {
 
 /// Both tables of elementary functions have one order, see the test.
 fn elementary(function: Function) -> Elementary {
-    Elementary::ALL[function as usize]
+    Elementary::ALL[function.place().expect("curves are none of them")]
 }
 
 /// Refuses a model whose events end runs.

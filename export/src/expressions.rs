@@ -1,8 +1,9 @@
 //! Numbers of a tape as C, operation for operation.
 
-use crate::Precision;
+use crate::names::Names;
 use gyro_codegen::tape::{Operation, Place, Tape};
 use gyro_codegen::{Variable, tape};
+use gyro_program::elementary::Function;
 use std::collections::HashMap;
 
 /// How strongly an expression binds, for parentheses.
@@ -17,7 +18,7 @@ enum Binding {
 /// A tape, and how what it reads is called.
 pub(crate) struct Line<'a> {
     tape: &'a Tape<Variable, f64>,
-    precision: Precision,
+    names: &'a Names<'a>,
     variable: &'a dyn Fn(Variable) -> String,
     named: HashMap<Place, String>,
 }
@@ -27,11 +28,11 @@ impl<'a> Line<'a> {
     pub(crate) fn new(
         tape: &'a Tape<Variable, f64>,
         letter: char,
-        precision: Precision,
+        names: &'a Names<'a>,
         variable: &'a dyn Fn(Variable) -> String,
     ) -> Self {
         let named = tape.named.iter().enumerate().map(|(n, &place)| (place, format!("{letter}{n}")));
-        Self { tape, precision, variable, named: named.collect() }
+        Self { tape, names, variable, named: named.collect() }
     }
 
     /// The name of a number that has one, and what computes it.
@@ -71,7 +72,7 @@ impl<'a> Line<'a> {
         let bound = |place: &Place, needed| self.bound(*place, needed);
         match self.tape.operation(place) {
             Operation::Constant(value) => {
-                let text = self.precision.constant(*value);
+                let text = self.names.precision.constant(*value);
                 let binding = if text.starts_with('-') { Unary } else { Call };
                 (text, binding)
             }
@@ -87,10 +88,14 @@ impl<'a> Line<'a> {
             Operation::Fused(a, b, c) => {
                 (format!("{} * {} + {}", bound(a, Product), bound(b, Unary), bound(c, Product)), Sum)
             }
+            Operation::Call(Function::Curve { curve, order }, [at, _]) => {
+                let name = self.names.own(&format!("curve_{curve}"));
+                (format!("{name}({order}, {})", self.value(*at)), Call)
+            }
             Operation::Call(function, operands) => {
                 let operands: Vec<String> =
                     operands[..function.arity()].iter().map(|&operand| self.value(operand)).collect();
-                (format!("{}({})", self.precision.function(*function), operands.join(", ")), Call)
+                (format!("{}({})", self.names.precision.function(*function), operands.join(", ")), Call)
             }
         }
     }

@@ -58,7 +58,7 @@ impl<'a> Writer<'a> {
         }
         self.arrays(&tape.arrays);
         let variable = |variable| names.variable(variable);
-        let line = Line::new(&tape.outside, 't', names.precision, &variable);
+        let line = Line::new(&tape.outside, 't', names, &variable);
         let mut n_fixed = 0;
         for (number, each) in tape.loops.iter().enumerate() {
             self.temporaries(&line, &each.named);
@@ -155,7 +155,7 @@ impl<'a> Writer<'a> {
             locals.insert(variable, name);
         }
         let variable = |variable| locals.get(&variable).cloned().unwrap_or_else(|| names.variable(variable));
-        let line = Line::new(&each.body, 'r', names.precision, &variable);
+        let line = Line::new(&each.body, 'r', names, &variable);
         self.temporaries(&line, &each.body.named);
         for row in &each.rows {
             let at = if let At::Part(offset) = row.at { evenly(offset, 1) } else { "0".to_owned() };

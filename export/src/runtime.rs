@@ -106,6 +106,9 @@ pub(crate) const POSES: &str = include_str!("../c/solver/poses.c");
 /// Curves of tables.
 pub(crate) const SPLINE: &str = include_str!("../c/spline.c");
 
+/// Curves that are called, after [`SPLINE`].
+pub(crate) const CURVE: &str = include_str!("../c/curve.c");
+
 /// Names that the run time has for what depends on the number type.
 pub(crate) fn arithmetic(precision: Precision) -> &'static str {
     match precision {

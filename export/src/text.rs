@@ -7,6 +7,7 @@ use crate::{Exported, MARK, Precision, runtime};
 use gyro_codegen::{JointPlace, Scheduled, shown_name};
 use gyro_model::{Model, Parameter, RowOwner, RowUnit};
 use gyro_program::{Group, Kernel, Space};
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 /// Writes header and source.
@@ -191,6 +192,27 @@ impl<'a> Writer<'a> {
         )
     }
 
+    /// A function for each curve that is called.
+    fn curves(&self) -> String {
+        let called: BTreeSet<u16> =
+            self.scheduled.kernels.values().flat_map(|kernel| kernel.tape.curves()).collect();
+        if called.is_empty() {
+            return String::new();
+        }
+        let [real, curve] = ["real", "curve"].map(|name| self.names.own(name));
+        let mut text = self.applied(runtime::CURVE);
+        for n in called {
+            let [knots, pieces] = ["knots", "pieces"].map(|name| self.names.own(&format!("{name}_{n}")));
+            let size = format!("(int)(sizeof {pieces} / sizeof *{pieces})");
+            let _ = write!(
+                text,
+                "\nstatic {real} {curve}_{n}(int order, {real} at)\n{{\n    return {curve}({knots}, {pieces}, {size}, \
+                 order, at);\n}}\n"
+            );
+        }
+        text
+    }
+
     fn source(&self) -> String {
         let mut kernels = String::new();
         for (n, curve) in self.scheduled.curves.iter().enumerate() {
@@ -204,6 +226,7 @@ impl<'a> Writer<'a> {
         if !self.scheduled.curves.is_empty() {
             kernels += &self.applied(runtime::SPLINE);
         }
+        kernels += &self.curves();
         for (of, pattern) in self.patterns() {
             let pairs: Vec<String> =
                 pattern.iter().map(|(row, column)| format!("{{{row}, {column}}}")).collect();

@@ -7,6 +7,7 @@ use crate::native::Native;
 use cranelift_jit::JITModule;
 use cranelift_module::FuncId;
 use gyro_codegen::Kernel;
+use gyro_model::Spline;
 use gyro_runner::batch::{BLOCK, Inputs};
 use std::fmt;
 use std::ops::Range;
@@ -80,13 +81,19 @@ pub(crate) struct Code<T: Native> {
     pub(crate) functions: Vec<Option<Function<T>>>,
     /// Constants of loops.
     pub(crate) tables: Vec<T>,
+    /// What functions of curves have the addresses of.
+    _curves: Box<[Spline]>,
     /// What the functions are part of; always there until it is dropped.
     module: Mutex<Option<JITModule>>,
 }
 
 impl<T: Native> Code<T> {
     /// Of a module whose functions are final.
-    pub(crate) fn new(module: JITModule, finished: &[Finished], tables: Vec<T>) -> Self {
+    pub(crate) fn new(
+        module: JITModule,
+        finished: &[Finished],
+        (tables, curves): (Vec<T>, Box<[Spline]>),
+    ) -> Self {
         let mut functions: Vec<Option<Function<T>>> = Kernel::all().map(|_| None).collect();
         for &Finished { kernel, id, reach, n_work, reads_curves } in finished {
             let address = module.get_finalized_function(id);
@@ -97,7 +104,7 @@ impl<T: Native> Code<T> {
             let is_plain = !reads_curves && of_tables == 0 && of_work == 0;
             functions[kernel as usize] = Some(Function { address, reach, n_work, reads_curves, is_plain });
         }
-        Self { functions, tables, module: Mutex::new(Some(module)) }
+        Self { functions, tables, _curves: curves, module: Mutex::new(Some(module)) }
     }
 }
 

@@ -26,6 +26,17 @@ pub(crate) const ARRAYS: [Array; 6] =
 pub(crate) const N_FUNCTIONS: usize = SIN_COS + 1;
 pub(crate) const SIN_COS: usize = Function::ALL.len();
 
+/// How many functions each curve has after these: its value and three derivatives.
+pub(crate) const N_ORDERS: usize = Function::LAST_ORDER as usize + 1;
+
+/// The place of a function among all.
+fn place(function: Function) -> usize {
+    match function {
+        Function::Curve { curve, order } => N_FUNCTIONS + N_ORDERS * usize::from(curve) + usize::from(order),
+        function => function.place().expect("it is one of all"),
+    }
+}
+
 /// A number type of machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Width {
@@ -64,8 +75,10 @@ impl Width {
             signature.params.push(AbiParam::new(pointer));
             return signature;
         }
-        let [n_arguments, n_results] =
-            Function::ALL.get(number).map_or([1, 2], |function| [function.arity(), 1]);
+        let [n_arguments, n_results] = match number {
+            SIN_COS => [1, 2],
+            number => [Function::ALL.get(number).map_or(1, |function| function.arity()), 1],
+        };
         signature.params.extend((0..n_arguments).map(|_| AbiParam::new(self.ty())));
         signature.returns.extend((0..n_results).map(|_| AbiParam::new(self.ty())));
         signature
@@ -92,7 +105,7 @@ pub(crate) struct Writer<'w, 'f> {
     pub(crate) shape: &'w Shape,
     /// Where the tables of each loop begin.
     pub(crate) tables: &'w [usize],
-    pub(crate) functions: [FuncRef; N_FUNCTIONS],
+    pub(crate) functions: &'w [FuncRef],
     pub(crate) pointer: Type,
     /// How much of each array is read or written.
     pub(crate) reach: [usize; 6],
@@ -260,7 +273,7 @@ impl Writer<'_, '_> {
             Operation::Call(Function::Cos, [a, _]) => self.sine_or_cosine(tape, (*a, Function::Cos), at(a)),
             Operation::Call(function, operands) => {
                 let operands = operands.map(|place| at(&place));
-                self.call(*function as usize, &operands[..function.arity()])[0]
+                self.call(place(*function), &operands[..function.arity()])[0]
             }
         }
     }
@@ -316,7 +329,7 @@ impl Writer<'_, '_> {
             _ => false,
         };
         if !self.width.takes_both() || !tape.operations.iter().any(is_other) {
-            return self.call(function as usize, &[value])[0];
+            return self.call(place(function), &[value])[0];
         }
         if let Some((_, both)) = self.turns.iter().find(|(of, _)| is_same(tape, *of, angle)) {
             return both[which];

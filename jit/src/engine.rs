@@ -1,6 +1,7 @@
 //! What computes the kernels of a mechanism.
 
 use gyro_codegen::{Argument, Kernel, Scheduled, ScheduledKernel, Variable};
+use gyro_model::Spline;
 use gyro_program::Space;
 use gyro_sim::Scalar;
 use std::fmt::{self, Debug};
@@ -162,5 +163,14 @@ pub(crate) fn reads_given(scheduled: &Scheduled, kernel: Kernel) -> bool {
 pub(crate) fn write_curves<T: Scalar>(scheduled: &Scheduled, t: T, out: &mut [T]) {
     for (curve, out) in scheduled.curves.iter().zip(out.as_chunks_mut::<3>().0) {
         *out = t.spline(&curve.knots, &curve.pieces);
+    }
+}
+
+/// A derivative of a curve by its order: the value is of order zero, and derivatives after the third one are zero.
+pub(crate) fn curve<T: Scalar>(curve: &Spline, order: usize, x: T) -> T {
+    match x.spline(&curve.knots, &curve.pieces).get(order) {
+        Some(&derivative) => derivative,
+        None if order == 3 => x.spline_third(&curve.knots, &curve.pieces),
+        None => T::constant(0.0),
     }
 }

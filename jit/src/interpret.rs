@@ -1,11 +1,13 @@
 //! Kernels by interpretation of their tapes: in any number type, where speed does not matter.
 
 use crate::engine::{
-    Arguments, Array, Engine, Input, Layout, NotCompiled, Shape, reads_curves, write_curves,
+    self, Arguments, Array, Engine, Input, Layout, NotCompiled, Shape, reads_curves, write_curves,
 };
 use crate::native::call;
 use gyro_codegen::tape::{At, Direction, Loop, Operation, Place, Tape};
 use gyro_codegen::{Kernel, Scheduled, Variable};
+use gyro_model::Spline;
+use gyro_program::elementary::Function;
 use gyro_sim::Scalar;
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -79,7 +81,8 @@ impl<T: Scalar> Engine<T> for Interpreter<T> {
             write_curves(scheduled, arguments.t, work);
         }
         let (tape, shape) = (&described.tape, &known.shape);
-        let mut run = Run { layout: self.layout, shape, arguments, work, fixed };
+        let curves = &scheduled.curves;
+        let mut run = Run { layout: self.layout, curves, shape, arguments, work, fixed };
         for each in &tape.loops {
             run.operations(&tape.outside, (each.after, None), numbers);
             run.fixed.extend(each.fixed.iter().map(|&place| number(numbers, place)));
@@ -100,6 +103,7 @@ impl<T: Scalar> Engine<T> for Interpreter<T> {
 /// A kernel that is being computed.
 struct Run<'a, T> {
     layout: Layout,
+    curves: &'a [Spline],
     shape: &'a Shape,
     arguments: Arguments<'a, T>,
     work: &'a mut Vec<T>,
@@ -142,6 +146,9 @@ impl<T: Scalar> Run<'_, T> {
                 Operation::Divide(a, b) => at(a) / at(b),
                 Operation::Negate(a) => -at(a),
                 Operation::Fused(a, b, c) => T::fused(at(a), at(b), at(c)),
+                Operation::Call(Function::Curve { curve, order }, [at_x, _]) => {
+                    engine::curve(&self.curves[usize::from(*curve)], usize::from(*order), at(at_x))
+                }
                 Operation::Call(function, operands) => call(*function, operands.map(|place| at(&place))),
             };
             numbers.push(value);

@@ -1,15 +1,16 @@
 //! Kernels as machine code: what Cranelift makes of them, and the engine that has it.
 
 use crate::calls::{Code, Finished, Function};
-use crate::clif::{N_FUNCTIONS, Width, Writer};
+use crate::clif::{N_FUNCTIONS, N_ORDERS, Width, Writer};
 use crate::engine::{Arguments, Engine, Input, Layout, NotCompiled, Shape, reads_curves, write_curves};
 use crate::native::Native;
 use cranelift_codegen::Context;
-use cranelift_codegen::ir::UserFuncName;
+use cranelift_codegen::ir::{AbiParam, FuncRef, InstBuilder, UserFuncName};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{FuncId, Linkage, Module, ModuleError};
 use gyro_codegen::{Kernel, Scheduled};
+use gyro_model::Spline;
 use gyro_program::elementary::Function as Elementary;
 use std::cell::RefCell;
 use std::fmt;
@@ -52,14 +53,16 @@ impl<T: Native> MachineCode<T> {
         for (number, address) in T::functions().into_iter().enumerate() {
             builder.symbol(symbol(number), address);
         }
-        let mut compiler = Compiler::new(JITModule::new(builder), T::BITS, layout)?;
+        builder.symbol(CURVE, T::curve());
+        let curves: Box<[Spline]> = called(scheduled).into();
+        let mut compiler = Compiler::new(JITModule::new(builder), T::BITS, layout, &curves)?;
         let kernels = scheduled.kernels.keys();
         let finished = kernels.map(|&kernel| compiler.kernel(scheduled, kernel, &mut told));
         let finished = finished.collect::<Result<Vec<_>, _>>()?;
         let Compiler { mut module, tables, .. } = compiler;
         module.finalize_definitions()?;
         let tables = tables.into_iter().map(T::constant).collect();
-        Ok(Self { code: Arc::new(Code::new(module, &finished, tables)), work: RefCell::default() })
+        Ok(Self { code: Arc::new(Code::new(module, &finished, (tables, curves))), work: RefCell::default() })
     }
 }
 
@@ -106,7 +109,20 @@ impl<T: Native> MachineCode<T> {
 
 /// The name under which a function is found that is called: not that of the C library's.
 fn symbol(number: usize) -> String {
-    format!("gyro_{}", Elementary::ALL.get(number).map_or("sin_cos", |function| function.name()))
+    match (Elementary::ALL.get(number), number.checked_sub(N_FUNCTIONS)) {
+        (Some(function), _) => format!("gyro_{}", function.name()),
+        (None, None) => "gyro_sin_cos".to_owned(),
+        (None, Some(place)) => format!("gyro_curve_{}_{}", place / N_ORDERS, place % N_ORDERS),
+    }
+}
+
+/// What evaluates all curves.
+const CURVE: &str = "gyro_curve";
+
+/// The tables of a mechanism, if any of its kernels calls one.
+fn called(scheduled: &Scheduled) -> Vec<Spline> {
+    let is_called = scheduled.kernels.values().any(|kernel| kernel.tape.curves().next().is_some());
+    if is_called { scheduled.curves.clone() } else { Vec::new() }
 }
 
 /// Compiles one kernel after the other.
@@ -115,25 +131,61 @@ struct Compiler {
     width: Width,
     layout: Layout,
     context: Context,
-    functions: [FuncId; N_FUNCTIONS],
+    functions: Vec<FuncId>,
     tables: Vec<f64>,
 }
 
 impl Compiler {
-    fn new(mut module: JITModule, bits: u32, layout: Layout) -> Result<Self, NotCompiled> {
+    fn new(mut module: JITModule, bits: u32, layout: Layout, curves: &[Spline]) -> Result<Self, NotCompiled> {
         let width = match bits {
             32 => Width::Single,
             64 => Width::Double,
             _ => Width::Pair,
         };
         let target = module.target_config();
-        let mut functions = [FuncId::from_u32(0); N_FUNCTIONS];
-        for (number, id) in functions.iter_mut().enumerate() {
+        let mut functions = Vec::new();
+        let n_curves = N_ORDERS * curves.len();
+        for number in 0..N_FUNCTIONS + n_curves {
             let signature = width.of_function(target.default_call_conv, target.pointer_type(), number);
-            *id = module.declare_function(&symbol(number), Linkage::Import, &signature)?;
+            let linkage = if number < N_FUNCTIONS { Linkage::Import } else { Linkage::Preemptible };
+            functions.push(module.declare_function(&symbol(number), linkage, &signature)?);
         }
         let context = module.make_context();
-        Ok(Self { module, width, layout, context, functions, tables: Vec::new() })
+        let mut compiler = Self { module, width, layout, context, functions, tables: Vec::new() };
+        for place in 0..n_curves {
+            compiler.curve(N_FUNCTIONS + place, &curves[place / N_ORDERS], place % N_ORDERS)?;
+        }
+        Ok(compiler)
+    }
+
+    /// A function that hands its argument on to the one that evaluates curves, with which curve it is and which
+    /// derivative. Who calls it sees a function of one number, as elementary ones are.
+    fn curve(&mut self, number: usize, curve: &Spline, order: usize) -> Result<(), NotCompiled> {
+        let target = self.module.target_config();
+        let pointer = target.pointer_type();
+        let signature = self.width.of_function(target.default_call_conv, pointer, number);
+        let mut evaluates = signature.clone();
+        evaluates.params.extend([AbiParam::new(pointer); 2]);
+        let evaluates = self.module.declare_function(CURVE, Linkage::Import, &evaluates)?;
+        self.context.func.signature = signature;
+        self.context.func.name = UserFuncName::user(0, self.functions[number].as_u32());
+        let mut parts = FunctionBuilderContext::new();
+        let mut builder = FunctionBuilder::new(&mut self.context.func, &mut parts);
+        let evaluates = self.module.declare_func_in_func(evaluates, builder.func);
+        let entry = builder.create_block();
+        builder.append_block_params_for_function_params(entry);
+        builder.switch_to_block(entry);
+        let argument = builder.block_params(entry)[0];
+        let address = builder.ins().iconst(pointer, std::ptr::from_ref(curve).addr() as i64);
+        let order = builder.ins().iconst(pointer, order as i64);
+        let call = builder.ins().call(evaluates, &[argument, address, order]);
+        let results = builder.inst_results(call).to_vec();
+        builder.ins().return_(&results);
+        builder.seal_all_blocks();
+        builder.finalize(target);
+        self.module.define_function(self.functions[number], &mut self.context)?;
+        self.module.clear_context(&mut self.context);
+        Ok(())
     }
 
     fn kernel(
@@ -154,14 +206,15 @@ impl Compiler {
         }
         let mut parts = FunctionBuilderContext::new();
         let mut builder = FunctionBuilder::new(&mut self.context.func, &mut parts);
-        let functions = self.functions.map(|id| self.module.declare_func_in_func(id, builder.func));
+        let functions = self.functions.iter().map(|&id| self.module.declare_func_in_func(id, builder.func));
+        let functions: Vec<FuncRef> = functions.collect();
         let mut writer = Writer {
             builder: &mut builder,
             width: self.width,
             layout: self.layout,
             shape: &shape,
             tables: &tables,
-            functions,
+            functions: &functions,
             pointer: target.pointer_type(),
             reach: [0; 6],
             strides: Vec::new(),

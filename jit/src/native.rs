@@ -1,5 +1,7 @@
 //! The number types that there is machine code for, and the elementary functions that it calls.
 
+use crate::engine;
+use gyro_model::Spline;
 use gyro_program::elementary::Function;
 use gyro_sim::Scalar;
 use gyro_sim::lanes::f64x2;
@@ -15,6 +17,9 @@ pub trait Native: Scalar + Send + Sync + 'static {
     /// The addresses of the elementary functions in their order, as a module that rustc compiles calls them, and where
     /// it is called that of sine with cosine.
     fn functions() -> Vec<*const u8>;
+    /// The address of what computes a derivative of a curve: of a number, or of packs in place, with the curve's
+    /// address and the order.
+    fn curve() -> *const u8;
 }
 
 /// What is called for each elementary function.
@@ -22,14 +27,20 @@ macro_rules! functions {
     ([$x:ident, $y:ident] $($function:ident: $method:ident($($operand:ident),+),)+) => {
         /// The value of an elementary function; of one operand the second one is of no matter.
         pub(crate) fn call<T: Scalar>(function: Function, [$x, $y]: [T; 2]) -> T {
-            match function { $(Function::$function => Scalar::$method($($operand),+)),+ }
+            match function {
+                $(Function::$function => Scalar::$method($($operand),+),)+
+                Function::Curve { .. } => unreachable!("curves are with their tables"),
+            }
         }
 
         /// The addresses of all functions of single numbers, in their order.
         fn addresses<T: Scalar>() -> Vec<*const u8> {
             // They do not unwind. Being allowed to, they are one jump to the function itself.
             $(extern "C-unwind" fn $method<T: Scalar>($($operand: T),+) -> T { Scalar::$method($($operand),+) })+
-            let address = |function| match function { $(Function::$function => $method::<T> as *const u8),+ };
+            let address = |function| match function {
+                $(Function::$function => $method::<T> as *const u8,)+
+                Function::Curve { .. } => unreachable!("it is none of all"),
+            };
             Function::ALL.map(address).to_vec()
         }
 
@@ -38,7 +49,10 @@ macro_rules! functions {
             $(extern "C" fn $method(packs: &mut [[f64; 2]; 2]) {
                 packs[0] = call(Function::$function, packs.map(f64x2::new)).to_array();
             })+
-            let address = |function| match function { $(Function::$function => $method as *const u8),+ };
+            let address = |function| match function {
+                $(Function::$function => $method as *const u8,)+
+                Function::Curve { .. } => unreachable!("it is none of all"),
+            };
             Function::ALL.map(address).to_vec()
         }
     };
@@ -57,6 +71,17 @@ functions! {
     Floor: floor(x),
     When: when(x, y),
     Unless: unless(x, y),
+}
+
+/// A derivative of a curve by its order.
+extern "C-unwind" fn curve<T: Scalar>(x: T, curve: &Spline, order: usize) -> T {
+    engine::curve(curve, order, x)
+}
+
+/// That of a pack, which takes its place.
+extern "C" fn curve_of_pack(packs: &mut [[f64; 2]; 2], curve: &Spline, order: usize) {
+    let x = f64x2::new(packs[0]);
+    packs[0] = engine::curve(curve, order, x).to_array();
 }
 
 /// Sine and cosine, which come back in two registers.
@@ -84,6 +109,9 @@ impl Native for f64x2 {
     fn functions() -> Vec<*const u8> {
         addresses_of_packs().into_iter().chain([sin_cos_of_pair as *const u8]).collect()
     }
+    fn curve() -> *const u8 {
+        curve_of_pack as *const u8
+    }
 }
 
 impl Native for f64 {
@@ -95,6 +123,9 @@ impl Native for f64 {
     fn functions() -> Vec<*const u8> {
         addresses::<Self>().into_iter().chain([sin_cos as *const u8]).collect()
     }
+    fn curve() -> *const u8 {
+        curve::<Self> as *const u8
+    }
 }
 
 impl Native for f32 {
@@ -105,6 +136,9 @@ impl Native for f32 {
     }
     fn functions() -> Vec<*const u8> {
         addresses::<Self>()
+    }
+    fn curve() -> *const u8 {
+        curve::<Self> as *const u8
     }
 }
 

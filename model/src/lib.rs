@@ -12,6 +12,7 @@ mod assemble;
 mod contact;
 mod controller;
 mod coordinate;
+mod curve;
 mod diagnostics;
 mod directions;
 mod elements;
@@ -39,6 +40,7 @@ pub use assemble::{AssemblyError, JointStart, Move, START_TOLERANCE, Start, Star
 pub use contact::Contact;
 pub use controller::{Controller, Law};
 pub use coordinate::{CoordinateKind, CoordinateUse, JointCoordinate, Seen};
+pub use curve::{Beyond, Curve, Joined};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
     BodyFrame, Coupler, Coupling, Driver, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind,
@@ -87,6 +89,8 @@ pub struct Model {
     pub drivers: Vec<Driver>,
     /// Forces besides gravity and the joints' own friction.
     pub forces: Vec<Force>,
+    /// Curves that formulas call, by their places in this list.
+    pub curves: Vec<Curve>,
     /// Formulas that have a name. Wherever the model file names one, its operations stand in the model.
     pub formulas: Vec<(String, Formula)>,
     /// Quantities that a differential equation of first order tells, with the motion: see [`State`].

@@ -4,7 +4,7 @@ use num_dual::Dual2_64;
 
 use crate::scalar::{Scalar, product};
 use crate::sight::Sight;
-use crate::{Body, Formula, Lines, Model, Number, Quaternion, Spline, Vector, to_f64, unit_vector};
+use crate::{Body, Formula, Lines, Model, Number, Quaternion, Seen, Spline, Vector, to_f64, unit_vector};
 
 /// A function of time with values in rad or m.
 #[derive(Clone, Debug)]
@@ -72,15 +72,17 @@ impl Motion {
         [x.re, x.v1, x.v2]
     }
 
-    /// The knots of its smooth tables.
-    fn add_knots(&self, knots: &mut Vec<f64>) {
+    /// The knots of its smooth tables, and of curves of the time itself.
+    fn add_knots(&self, model: &Model, knots: &mut Vec<f64>) {
         match self {
-            Self::Polynomial(_)
-            | Self::Sinusoid { .. }
-            | Self::Lines(_)
-            | Self::Formula(_)
-            | Self::Input(_) => {}
-            Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.add_knots(knots)),
+            Self::Polynomial(_) | Self::Sinusoid { .. } | Self::Lines(_) | Self::Input(_) => {}
+            Self::Formula(formula) => {
+                let of_time = formula.curves_of(Seen::Time).map(|curve| &model.curves[curve].spline);
+                of_time.for_each(|spline| knots.extend(&spline.knots));
+            }
+            Self::Sum(parts) | Self::Product(parts) => {
+                parts.iter().for_each(|part| part.add_knots(model, knots));
+            }
             Self::Table(spline) => knots.extend(&spline.knots),
         }
     }
@@ -114,10 +116,10 @@ impl Model {
     /// smooth tables. Kinks are told by [`Model::lines`].
     pub fn knots(&self) -> Vec<f64> {
         let mut knots = Vec::new();
-        self.drivers.iter().for_each(|driver| driver.motion.add_knots(&mut knots));
+        self.drivers.iter().for_each(|driver| driver.motion.add_knots(self, &mut knots));
         for motion in self.bodies.iter().filter_map(|body| body.motion.as_ref()) {
             let angles = motion.rotations.iter().map(|(_, angle)| angle);
-            motion.translation.iter().chain(angles).for_each(|motion| motion.add_knots(&mut knots));
+            motion.translation.iter().chain(angles).for_each(|motion| motion.add_knots(self, &mut knots));
         }
         knots
     }
@@ -174,6 +176,14 @@ impl Body {
 }
 
 impl Motion {
+    /// All formulas that are part of it.
+    pub(crate) fn formulas(&self) -> Vec<&Formula> {
+        let parts = self.parts().into_iter();
+        parts
+            .filter_map(|part| if let Self::Formula(formula) = part { Some(formula) } else { None })
+            .collect()
+    }
+
     /// It, or the motions that it is a sum or a product of.
     fn parts(&self) -> Vec<&Self> {
         match self {

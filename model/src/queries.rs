@@ -2,9 +2,9 @@
 
 use crate::redundancy::analyse_with_start;
 use crate::{
-    BodyMotion, CoordinateKind, CoordinateUse, Coupler, Formula, JointCoordinate, JointKind, Lines, Model,
-    Motion, Number, Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start, Support,
-    Tree, to_f64,
+    BodyMotion, CoordinateKind, CoordinateUse, Coupler, Coupling, Formula, JointCoordinate, JointKind, Lines,
+    Model, Motion, Number, Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start,
+    Support, Tree, to_f64,
 };
 use std::ops::Range;
 
@@ -16,6 +16,26 @@ impl Support {
 }
 
 impl Model {
+    /// The curves that equations and outputs call, by their places, each once.
+    pub fn curves_of_equations(&self) -> Vec<usize> {
+        let of_forces = self.forces.iter().flat_map(|force| force.kind.parts().numbers);
+        let of_forces = of_forces.flat_map(|(_, numbers)| numbers).filter_map(Number::formula);
+        let of_couplers = self.couplers.iter().filter_map(|coupler| match &coupler.by {
+            Coupling::Formula(formula) => Some(formula),
+            Coupling::Linear { .. } => None,
+        });
+        let of_bodies = self.bodies.iter().filter_map(|body| body.motion.as_ref());
+        let motions =
+            of_bodies.flat_map(BodyMotion::parts).chain(self.drivers.iter().map(|driver| &driver.motion));
+        let of_outputs = self.outputs.iter().filter_map(|output| output.kind.formula());
+        let formulas =
+            of_forces.chain(of_couplers).chain(motions.flat_map(Motion::formulas)).chain(of_outputs);
+        let mut curves: Vec<usize> = formulas.flat_map(Formula::curves).collect();
+        curves.sort_unstable();
+        curves.dedup();
+        curves
+    }
+
     /// The value of a number of the model file with the model's parameters as they are; 0 where it divides by zero,
     /// which neither the model file nor parameters that are set may do.
     pub fn exact(&self, number: &Number) -> Rational {

@@ -1,7 +1,7 @@
 //! Values of formulas over any scalar, with the model's parameters as they are.
 
 use crate::scalar::Scalar;
-use crate::{Formula, JointCoordinate, Model, Operation, Seen};
+use crate::{Formula, JointCoordinate, Model, Operation, Seen, Spline};
 use gyro_program::elementary::Function;
 use std::convert::Infallible;
 
@@ -11,6 +11,8 @@ pub(crate) struct Sight {
     formula: Formula,
     /// Of each operation that is a number its value; zero of others.
     numbers: Vec<f64>,
+    /// Those of the model that it calls, by their places.
+    curves: Vec<(u16, Spline)>,
 }
 
 impl Sight {
@@ -19,7 +21,12 @@ impl Sight {
             Operation::Number(number) => model.value(number),
             _ => 0.0,
         };
-        Self { formula: formula.clone(), numbers: formula.operations.iter().map(number).collect() }
+        let curve = |place: usize| (place as u16, model.curves[place].spline.clone());
+        Self {
+            formula: formula.clone(),
+            numbers: formula.operations.iter().map(number).collect(),
+            curves: formula.curves().map(curve).collect(),
+        }
     }
 
     /// The joint coordinates that it sees.
@@ -44,6 +51,10 @@ impl Sight {
                 Operation::Product(a, b) => values[*a] * values[*b],
                 Operation::Quotient(a, b) => values[*a] / values[*b],
                 Operation::Power(a, exponent) => values[*a].powi(*exponent),
+                Operation::Call(Function::Curve { curve, .. }, [a, _]) => {
+                    let spline = self.curves.iter().find(|(place, _)| place == curve);
+                    spline.map_or(D::zero(), |(_, spline)| spline.at(values[*a]))
+                }
                 Operation::Call(function, operands) => call(*function, operands.map(|a| values[a])),
             })
         });
@@ -70,6 +81,7 @@ fn call<D: Scalar>(function: Function, [a, b]: [D; 2]) -> D {
             }
         }
         Function::Floor => D::from(a.re().floor()),
+        Function::Curve { .. } => unreachable!("curves are with formulas"),
         Function::When => {
             if a.re() > 0.0 {
                 b

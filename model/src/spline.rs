@@ -55,6 +55,16 @@ impl Spline {
         [x.re, x.v1, x.v2]
     }
 
+    /// Value, first, second and third derivative; the last is that of the piece that begins at a knot, and zero beyond
+    /// the ends.
+    pub fn jet(&self, t: f64) -> [f64; 4] {
+        let [value, slope, bend] = self.value(t);
+        let past = self.knots.partition_point(|&knot| knot <= t);
+        let third =
+            if (1..=self.pieces.len()).contains(&past) { 6.0 * self.pieces[past - 1][3] } else { 0.0 };
+        [value, slope, bend, third]
+    }
+
     /// The curve over any scalar.
     pub(crate) fn at<D: Scalar>(&self, t: D) -> D {
         let (first, last) = (self.knots[0], self.knots[self.pieces.len()]);

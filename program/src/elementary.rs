@@ -27,6 +27,14 @@ pub enum Function {
     When,
     /// The second operand where the first one is at most zero, and zero where it is greater; NaN where that is NaN.
     Unless,
+    /// A curve of a list that whoever computes has, or a derivative of it; of a formula the list is the model's, of an
+    /// expression that of the module's tables. It is none of [`Function::ALL`].
+    Curve {
+        /// Which one.
+        curve: u16,
+        /// Which derivative, from zero to [`Function::LAST_ORDER`]; all further ones are zero.
+        order: u8,
+    },
 }
 
 /// What becomes of a function when the sign of its first operand changes.
@@ -56,7 +64,7 @@ pub struct Properties {
 }
 
 impl Function {
-    /// All functions, in their order.
+    /// All functions but curves, in their order.
     pub const ALL: [Self; 11] = [
         Self::Sqrt,
         Self::Sin,
@@ -87,6 +95,7 @@ impl Function {
             Self::Floor => ("floor", ["floor", "floorf"], 1, Neither, Some(0)),
             Self::When => ("when", ["gyro_when", "gyro_whenf"], 2, Neither, None),
             Self::Unless => ("unless", ["gyro_unless", "gyro_unlessf"], 2, Neither, None),
+            Self::Curve { .. } => ("spline", ["gyro_spline", "gyro_splinef"], 1, Neither, None),
         };
         Properties { name, in_c, arity, parity, at_zero }
     }
@@ -99,6 +108,22 @@ impl Function {
     /// How many operands it has.
     pub const fn arity(self) -> usize {
         self.properties().arity
+    }
+
+    /// The last derivative of a curve that is not zero: its pieces are cubics.
+    pub const LAST_ORDER: u8 = 3;
+
+    /// A derivative of a curve, by its place.
+    ///
+    /// # Panics
+    /// There are more curves than a `u16` counts.
+    pub fn curve(curve: usize, order: u8) -> Self {
+        Self::Curve { curve: u16::try_from(curve).expect("a model has fewer curves"), order }
+    }
+
+    /// Its place in [`Function::ALL`]; `None` of curves.
+    pub fn place(self) -> Option<usize> {
+        Self::ALL.into_iter().position(|function| function == self)
     }
 
     /// The function of a name in Rust.

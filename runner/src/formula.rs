@@ -30,6 +30,15 @@ pub enum Operation {
     Power(usize, i32),
     /// An elementary function; of one operand both are the same.
     Call(Elementary, [usize; 2]),
+    /// A curve, as the run time has it, of one operand.
+    Curve {
+        /// Arguments at which its pieces begin, and the last one's end.
+        knots: Vec<f64>,
+        /// Its pieces.
+        pieces: Vec<[f64; 4]>,
+        /// The operand.
+        at: usize,
+    },
 }
 
 impl Formula {
@@ -46,6 +55,10 @@ impl Formula {
                 Operation::Product(a, b) => values[*a] * values[*b],
                 Operation::Quotient(a, b) => values[*a] / values[*b],
                 Operation::Power(base, exponent) => power(values[*base], *exponent),
+                Operation::Curve { knots, pieces, at } => {
+                    let [value, ..] = values[*at].spline(knots, pieces);
+                    value
+                }
                 Operation::Call(function, operands) => T::call(*function, operands.map(|a| values[a])),
             });
         }

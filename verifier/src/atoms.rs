@@ -21,8 +21,8 @@ use gyro_model::Spline;
 pub trait Atoms<F: Field> {
     /// An elementary function; of one operand both are the same.
     fn call(&self, function: Function, operands: [&F; 2]) -> F;
-    /// Value, first and second derivative of a table's curve.
-    fn spline(&self, table: &Spline, t: &F) -> [F; 3];
+    /// Value and three derivatives of a table's curve.
+    fn spline(&self, table: &Spline, t: &F) -> [F; 4];
     /// Sine.
     fn sin(&self, x: &F) -> F {
         self.call(Function::Sin, [x, x])

@@ -34,7 +34,8 @@ pub struct Clif<'a> {
 /// what is given with it (accelerations, changes of rows, charts), of the mechanism's own numbers (parameters, what
 /// depends on them alone, inputs), of the constants of loops, of work space (curves of tables, three numbers each, then
 /// whatever it keeps there itself) and of its results. It calls elementary functions by their places among all,
-/// `u0:0` and so on, and sine with cosine as the one after them.
+/// `u0:0` and so on, sine with cosine as the one after them, and then value and three derivatives of each table's
+/// curve.
 #[derive(Debug)]
 pub struct Written {
     module: Module,

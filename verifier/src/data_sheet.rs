@@ -2,7 +2,7 @@
 //!
 //! All of it is made anew from the model and from the formulas that were read; nothing is said that is not known here.
 
-use crate::module::{Module, counts, frames, type_name};
+use crate::module::{Module, counts, frames, is_of_curve, type_name};
 use crate::program::{Node, Operations, Program};
 use crate::refusal::Refusal;
 use gyro_model::{Model, Number, Parameter, RowOwner, Support, to_f64};
@@ -301,12 +301,11 @@ fn of_items(model: &Model, module: &Module) -> Vec<String> {
     docs.extend(
         model.inputs.iter().map(|p| format!(" Input, set at every step; until then {:?}.", default(p))),
     );
-    docs.extend(
-        module
-            .tables
-            .iter()
-            .map(|table| format!(" Times of the points of `{}`, s.", printable(&table.source))),
-    );
+    docs.extend(module.tables.iter().map(|table| {
+        let is_of_curve = is_of_curve(model, table);
+        let [of, unit] = if is_of_curve { ["Arguments", ""] } else { ["Times", ", s"] };
+        format!(" {of} of the points of `{}`{unit}.", printable(&table.source))
+    }));
     docs.extend(module.implements("Dynamics").then(|| {
         match module.n_accelerations - 6 * model.coordinate_bodies().len() {
             0 => " (s̈, ẇ') of each body.".to_owned(),

@@ -99,8 +99,7 @@ pub(crate) fn value<'v, F: Field + 'v>(
         Node::Neg(a) => operand(a).neg(),
         Node::Call(function, operands) => atoms.call(function, operands.map(operand)),
         Node::Curve { table, order, time } => {
-            let [value, first, second] = atoms.spline(&environment.tables[table], operand(time));
-            [value, first, second][order].clone()
+            atoms.spline(&environment.tables[table], operand(time))[order].clone()
         }
     })
 }

@@ -26,6 +26,7 @@ use skeleton::Has;
 pub(crate) use skeleton::{n_state, type_name};
 use std::collections::BTreeMap;
 use syn::Block;
+pub use tables::is_of_curve;
 
 /// What a module says, after everything around its formulas was found to be as the model determines it.
 #[derive(Clone, Debug)]

@@ -181,11 +181,15 @@ impl Operations {
     pub fn of(program: &Program) -> Self {
         let mut operations = Self::default();
         for node in &program.nodes {
-            match node {
+            match *node {
                 Node::Add(..) | Node::Sub(..) => operations.additions += 1,
                 Node::Mul(..) => operations.multiplications += 1,
                 Node::Div(..) => operations.divisions += 1,
                 Node::Call(..) => operations.functions += 1,
+                // Those of the time are there before all else.
+                Node::Curve { time, .. } if program.nodes[time] != Node::Read(Source::Time) => {
+                    operations.functions += 1;
+                }
                 Node::Constant(_) | Node::Read(_) | Node::Neg(_) | Node::Curve { .. } => {}
             }
         }

@@ -36,7 +36,11 @@ pub fn rates<F: Field>(
                 rate_of_call(function, (given, value), moved, atoms)?
             }
             Node::Curve { table, order, time } => match rate(time) {
-                Some(rate) => Some(atoms.spline(&tables[table], &values[time]).get(order + 1)?.mul(rate)),
+                Some(rate) => {
+                    // The third derivative is constant but where it jumps.
+                    let slopes = atoms.spline(&tables[table], &values[time]);
+                    slopes.get(order + 1).map(|slope| slope.mul(rate))
+                }
                 None => None,
             },
         };

@@ -296,8 +296,8 @@ impl<'t> Atoms<Term<'t>> for Written {
         operands[0].note(Node::Call(function, operands.map(|x| x.id)))
     }
 
-    fn spline(&self, table: &Spline, t: &Term<'t>) -> [Term<'t>; 3] {
+    fn spline(&self, table: &Spline, t: &Term<'t>) -> [Term<'t>; 4] {
         let table = t.tape.table(table);
-        [0, 1, 2].map(|order| t.note(Node::Curve { table, order, time: t.id }))
+        [0, 1, 2, 3].map(|order| t.note(Node::Curve { table, order, time: t.id }))
     }
 }

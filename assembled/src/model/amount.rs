@@ -1,5 +1,6 @@
 //! Strengths of forces: constants, inputs, and formulas of what moves.
 
+use crate::model::curves::Curves;
 use crate::model::joint::Joint;
 use crate::model::measure::Coordinate;
 use crate::model::path::Path;
@@ -19,8 +20,15 @@ pub(crate) enum Amount<T> {
     Constant(T),
     /// Index into [`crate::Lowered::inputs`], and a factor of 1 or −1.
     Input(usize, T),
-    /// A formula, with what stands at each of its operations that has no operands.
-    Formula(Arc<(Formula, Vec<Option<Leaf<T>>>)>),
+    Formula(Arc<Written<T>>),
+}
+
+/// A formula, with what stands at each of its operations that has no operands, and the curves that it calls.
+#[derive(Clone, Debug)]
+pub(crate) struct Written<T> {
+    formula: Formula,
+    leaves: Vec<Option<Leaf<T>>>,
+    curves: Curves,
 }
 
 /// What a formula begins with.
@@ -93,7 +101,8 @@ impl<T: Number> Amount<T> {
                     Operation::Seen(seen) => Some(Leaf::new(model, parts, *seen)),
                     _ => None,
                 });
-                Self::Formula(Arc::new((Formula::clone(formula), leaves.collect())))
+                let (leaves, curves) = (leaves.collect(), Curves::of(model, formula));
+                Self::Formula(Arc::new(Written { formula: Formula::clone(formula), leaves, curves }))
             }
             PageNumber::Exact(_) | PageNumber::Parameter { .. } | PageNumber::Computed(_) => {
                 Self::Constant(number(model.value(value)))
@@ -106,8 +115,9 @@ impl<T: Number> Amount<T> {
             Self::Constant(value) => *value,
             Self::Input(index, sign) => now.scene.inputs[*index].1 * *sign,
             Self::Formula(formula) => {
-                let (formula, leaves) = &**formula;
-                value(formula, |place| leaves[place].as_ref().map_or(T::zero(), |leaf| leaf.value(now)))
+                let Written { formula, leaves, curves } = &**formula;
+                let leaf = |place: usize| leaves[place].as_ref().map_or(T::zero(), |leaf| leaf.value(now));
+                value(formula, leaf, curves)
             }
         }
     }
@@ -174,7 +184,7 @@ impl<T: Number> Amount<T> {
     /// The derivative of a formula by one of the numbers that it sees, which are independent of one another.
     pub(crate) fn slope(&self, now: &Now<'_, T>, by: Seen) -> T {
         let Self::Formula(formula) = self else { return T::zero() };
-        let (formula, leaves) = &**formula;
+        let Written { formula, leaves, curves } = &**formula;
         let pair = formula.value(|operation, values: &[(T, T)]| {
             Ok::<_, Infallible>(match operation {
                 Operation::Number(_) | Operation::Seen(_) => {
@@ -199,7 +209,11 @@ impl<T: Number> Amount<T> {
                     (power(a, *exponent), factor * da)
                 }
                 Operation::Call(function, operands) => {
-                    call_with_slope(*function, operands.map(|a| values[a]))
+                    let (x, dx) = values[operands[0]];
+                    match curves.jet(*function, x) {
+                        Some([value, slope, _]) => (value, slope * dx),
+                        None => call_with_slope(*function, operands.map(|a| values[a])),
+                    }
                 }
             })
         });
@@ -224,12 +238,13 @@ fn call_with_slope<T: Number>(function: Function, [(x, dx), (y, dy)]: [(T, T); 2
         Function::Floor => zero,
         Function::When => if_positive(x, dy, zero),
         Function::Unless => if_positive(x, zero, dy),
+        Function::Curve { .. } => unreachable!("curves are with formulas"),
     };
     (value, slope)
 }
 
 /// The value of a formula, given the numbers that it begins with, by the places of their operations.
-fn value<T: Number>(formula: &Formula, leaf: impl Fn(usize) -> T) -> T {
+fn value<T: Number>(formula: &Formula, leaf: impl Fn(usize) -> T, curves: &Curves) -> T {
     let value = formula.value(|operation, values: &[T]| {
         Ok::<_, Infallible>(match operation {
             Operation::Number(_) | Operation::Seen(_) => leaf(values.len()),
@@ -239,7 +254,10 @@ fn value<T: Number>(formula: &Formula, leaf: impl Fn(usize) -> T) -> T {
             Operation::Product(a, b) => values[*a] * values[*b],
             Operation::Quotient(a, b) => values[*a] / values[*b],
             Operation::Power(a, exponent) => power(values[*a], *exponent),
-            Operation::Call(function, operands) => call(*function, operands.map(|a| values[a])),
+            Operation::Call(function, operands) => match curves.jet(*function, values[operands[0]]) {
+                Some([value, ..]) => value,
+                None => call(*function, operands.map(|a| values[a])),
+            },
         })
     });
     let Ok(value) = value;

@@ -1,5 +1,6 @@
 //! Motions prescribed in time, in numbers: evaluated in `f64`, whatever the scalar, as the joint frames are.
 
+use crate::model::curves::{polynomial, table};
 use crate::model::motion::Motion as Moving;
 use crate::model::textbook::{product, rotation};
 use crate::model::tracked::Tracked;
@@ -110,22 +111,6 @@ impl Course {
 fn set(numbers: &mut [f64], inputs: &[usize], (index, value): (usize, f64)) {
     let own = numbers.iter_mut().zip(inputs).filter(|(_, input)| **input == index);
     own.for_each(|(number, _)| *number = value);
-}
-
-/// Horner's rule for a polynomial and its derivatives.
-fn polynomial(coefficients: &[f64], t: f64) -> [f64; 3] {
-    coefficients
-        .iter()
-        .rev()
-        .fold([0.0; 3], |[value, slope, bend], c| [value * t + c, slope * t + value, bend * t + 2.0 * slope])
-}
-
-/// A spline, which goes on as a straight line beyond its ends.
-fn table(knots: &[f64], pieces: &[[f64; 4]], t: f64) -> [f64; 3] {
-    let inside = t.clamp(knots[0], knots[pieces.len()]);
-    let piece = knots[1..pieces.len()].partition_point(|&knot| knot <= inside);
-    let [value, slope, bend] = polynomial(&pieces[piece], inside - knots[piece]);
-    if t == inside { [value, slope, bend] } else { [value + slope * (t - inside), slope, 0.0] }
 }
 
 impl DrivenBody {

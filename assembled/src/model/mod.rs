@@ -5,6 +5,7 @@ pub(crate) mod applied;
 pub(crate) mod armatures;
 pub(crate) mod constraints;
 pub(crate) mod course;
+pub(crate) mod curves;
 pub(crate) mod energy;
 pub(crate) mod forces;
 pub(crate) mod gradient;

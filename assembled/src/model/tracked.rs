@@ -1,5 +1,6 @@
 //! Formulas of what joints measure, with derivatives: what coordinates are to be that couplers move.
 
+use crate::model::curves::Curves;
 use crate::model::measure::Term;
 use crate::number::{Number, call, number};
 use gyro_model::{Formula, JointCoordinate, Model, Operation, Seen};
@@ -10,6 +11,7 @@ use std::convert::Infallible;
 #[derive(Clone, Debug)]
 pub(crate) struct Tracked<T> {
     formula: Formula,
+    curves: Curves,
     /// Of each operation its number, if it is one; zero of others.
     numbers: Vec<T>,
     /// The coordinates, each once.
@@ -29,6 +31,7 @@ impl<T: Number> Tracked<T> {
         let coordinates: Vec<_> = formula.uses().map(|(on, _)| on).collect();
         Self {
             formula: formula.clone(),
+            curves: Curves::of(model, formula),
             numbers: formula.operations.iter().map(value).collect(),
             terms: coordinates.iter().map(|on| term(*on)).collect(),
             coordinates,
@@ -76,7 +79,12 @@ impl<T: Number> Tracked<T> {
                     let slopes = [factor(*n) * power(n - 1), factor(*n) * factor(n - 1) * power(n - 2)];
                     chain(power(*n), slopes, values[*a])
                 }
-                Operation::Call(function, operands) => function_jet(*function, operands.map(|a| values[a])),
+                Operation::Call(function, operands) => {
+                    match self.curves.jet(*function, values[operands[0]][0]) {
+                        Some([value, slope, bend]) => chain(value, [slope, bend], values[operands[0]]),
+                        None => function_jet(*function, operands.map(|a| values[a])),
+                    }
+                }
             })
         });
         let Ok(jet) = jet;
@@ -118,6 +126,7 @@ fn function_jet<T: Number>(function: Function, [x, y]: [Jet<T>; 2]) -> Jet<T> {
         Function::Ln => [one / x[0], -one / (x[0] * x[0])],
         Function::Abs => [if x[0] < zero { -one } else { one }, zero],
         Function::Floor => [zero, zero],
+        Function::Curve { .. } => unreachable!("curves are with formulas"),
         // θ' = (x y' − y x') / r² of the point (x, y), and its derivative.
         Function::Atan2 => {
             let ([b, db, ddb], [a, da, dda]) = (x, y);

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A rotor about the vertical, with an inertia of 0.5 kg·m².
-const ROTOR: &str = "format = 1\nname = \"rotor\"\n[parameters]\nk = 3\n[inputs]\nu = 0.7\n[[body]]\nname = \"ground\"\n\
+pub(crate) const ROTOR: &str = "format = 1\nname = \"rotor\"\n[parameters]\nk = 3\n[inputs]\nu = 0.7\n[[body]]\nname = \"ground\"\n\
     fixed = true\n[[body]]\nname = \"wheel\"\nmass = 1\ninertia = [1, 1, 0.5]\n[[joint]]\nname = \"turn\"\n\
     kind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\nfirst = { body = \"ground\" }\n\
     second = { body = \"wheel\" }\nangle = 0.4\nrate = 1.5\n";
@@ -18,7 +18,7 @@ const SLIDER: &str = "format = 1\nname = \"slider\"\n[[body]]\nname = \"ground\"
     mass = 2\ninertia = [1, 1, 1]\n[[joint]]\nname = \"rail\"\nkind = \"prismatic\"\naxis = [1, 0, 0]\nzero = [0, 1, 0]\n\
     first = { body = \"ground\" }\nsecond = { body = \"cart\" }\ndisplacement = 0.5\nrate = -0.2\n";
 
-const RUNS: [&[&str]; 4] = [
+pub(crate) const RUNS: [&[&str]; 4] = [
     &["--integrator", "dop853", "--tolerance", "1e-12"],
     &["--coordinates", "maximal", "--integrator", "dop853", "--tolerance", "1e-12"],
     &["--integrator", "tsit5", "--tolerance", "1e-11"],
@@ -51,12 +51,16 @@ fn integrated<const N: usize>(
 }
 
 /// The same of one coordinate.
-fn integrated_one(y: [f64; 2], t_end: f64, acceleration: impl Fn(f64, f64, f64) -> f64) -> [f64; 2] {
+pub(crate) fn integrated_one(
+    y: [f64; 2],
+    t_end: f64,
+    acceleration: impl Fn(f64, f64, f64) -> f64,
+) -> [f64; 2] {
     let [x, v] = integrated(y.map(|y| [y]), t_end, |[x], [v], t| [acceleration(x, v, t)]);
     [x[0], v[0]]
 }
 
-fn run(page: &str, options: &[&str], t_end: &str) -> Value {
+pub(crate) fn run(page: &str, options: &[&str], t_end: &str) -> Value {
     static RUNS: AtomicUsize = AtomicUsize::new(0);
     let folder = Folder::new(&format!("laws-{}", RUNS.fetch_add(1, Ordering::Relaxed)));
     fs::write(folder.0.join("page.toml"), page).unwrap();
@@ -64,7 +68,7 @@ fn run(page: &str, options: &[&str], t_end: &str) -> Value {
 }
 
 /// Position and rate of the first joint, and the drift of the energy.
-fn end(run: &Value) -> [f64; 3] {
+pub(crate) fn end(run: &Value) -> [f64; 3] {
     let joints = run["joints"].as_object().unwrap();
     let joint = joints.get("turn").or_else(|| joints.get("rail")).unwrap();
     let number = |value: &Value| value.as_f64().unwrap();
@@ -239,14 +243,14 @@ fn what_has_no_value_ends_a_run() {
 }
 
 /// A run of one of the examples, to 1e-12.
-fn example(name: &str, t_end: &str) -> Value {
+pub(crate) fn example(name: &str, t_end: &str) -> Value {
     let folder = Folder::new(name);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/laws").join(format!("{name}.toml"));
     let page = path.display().to_string();
     json(&folder, &[&page, "--t-end", t_end, "--integrator", "dop853", "--tolerance", "1e-12"])
 }
 
-fn joint(run: &Value, name: &str) -> [f64; 2] {
+pub(crate) fn joint(run: &Value, name: &str) -> [f64; 2] {
     ["position", "rate"].map(|key| run["joints"][name][key].as_f64().unwrap())
 }
 

@@ -6,6 +6,7 @@ mod cells;
 mod closed_loops;
 mod contacts;
 mod controllers;
+mod curves;
 mod defaults;
 mod events;
 mod followed;

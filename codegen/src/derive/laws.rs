@@ -120,7 +120,21 @@ fn one(
         Operation::Product(a, b) => system.graph.mul(of(*a), of(*b)),
         Operation::Quotient(a, b) => system.graph.div(of(*a), of(*b)),
         Operation::Power(a, exponent) => power(system, of(*a), *exponent),
-        Operation::Call(function, operands) => system.graph.call(*function, operands.map(of)),
+        Operation::Call(function, operands) => {
+            let function = called(system, *function);
+            system.graph.call(function, operands.map(of))
+        }
+    }
+}
+
+/// A function with the place of a curve's table.
+fn called(system: &mut System, function: Function) -> Function {
+    match function {
+        Function::Curve { curve, order } => {
+            let model = system.model;
+            Function::curve(system.table(&model.curves[usize::from(curve)].spline), order)
+        }
+        function => function,
     }
 }
 
@@ -135,6 +149,8 @@ pub fn with_slope(
         let value_of = |place: usize| values[place].0;
         let slope_of = |place: usize| values[place].1;
         let value = one(system, operation, value_of, |system, seen| see(system, readings, None, seen));
+
+        let called = if let Operation::Call(of, _) = operation { Some(called(system, *of)) } else { None };
         let graph = &mut system.graph;
         let slope = match operation {
             Operation::Number(_) => Graph::ZERO,
@@ -169,7 +185,8 @@ pub fn with_slope(
                 graph.call(*function, [value_of(*condition), slope_of(*taken)])
             }
             Operation::Call(function, operands) => {
-                let slopes = elementary::slopes(graph, *function, operands.map(value_of), value);
+                let function = called.unwrap_or(*function);
+                let slopes = elementary::slopes(graph, function, operands.map(value_of), value);
                 graph.dot(&slopes, &operands.map(slope_of))
             }
         };

@@ -67,8 +67,9 @@ impl<'m> System<'m> {
         self.graph.add(place, way)
     }
 
-    fn table(&mut self, spline: &'m Spline) -> usize {
-        if let Some(known) = self.tables.iter().position(|known| *known == spline) {
+    /// The place of a table among all.
+    pub fn table(&mut self, spline: &'m Spline) -> usize {
+        if let Some(known) = self.tables.iter().position(|known| is_same(known, spline)) {
             return known;
         }
         self.tables.push(spline);
@@ -129,4 +130,9 @@ fn turned(graph: &mut Graph, p: &Vec4, u: &Vec3, angle: ExprId) -> Vec4 {
     let (sin, cos) = (graph.sin(half_angle), graph.cos(half_angle));
     let [x, y, z] = graph.scale_vec(sin, u);
     graph.compose(p, &[cos, x, y, z])
+}
+
+/// Whether two tables have the same numbers.
+fn is_same(one: &Spline, other: &Spline) -> bool {
+    (&one.knots, &one.pieces) == (&other.knots, &other.pieces)
 }

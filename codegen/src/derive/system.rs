@@ -64,7 +64,12 @@ impl<'m> System<'m> {
             tables: Vec::new(),
             turns: model.turn_references(),
         };
+        for curve in model.curves_of_equations() {
+            system.table(&model.curves[curve].spline);
+        }
+        let curves = system.tables.iter().map(|&table| table.clone()).collect();
         system.graph.domains = Domains::of(model);
+        system.graph.domains.curves = curves;
         system.poses = (0..model.bodies.len()).map(|body| system.pose(body)).collect();
         system.joints = (0..model.joints.len()).map(|joint| system.joint_frames(joint)).collect();
         system.define_angles();

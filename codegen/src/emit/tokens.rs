@@ -1,11 +1,12 @@
 //! A tape as Rust tokens.
 
 use crate::emit::literals::Literals;
-use crate::emit::names::ident;
+use crate::emit::names::{ident, index, table_names};
 use crate::emit::results::Value;
 use crate::expr::constant::Constant;
 use crate::expr::symbol::Symbol;
 use crate::tape::{Exact, Kernel, Operation, Place};
+use gyro_program::elementary::Function;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 use rustc_hash::FxHashMap as HashMap;
@@ -225,6 +226,15 @@ impl<'a, V: Variables> Writer<'a, V> {
             Operation::Fused(x, y, added) => {
                 let (x, y, added) = (sum(x), sum(y), sum(added));
                 (quote! { T::fused(#x, #y, #added) }, Binding::Call)
+            }
+            Operation::Call(Function::Curve { curve, order }, [a, _]) => {
+                let (a, (knots, pieces)) =
+                    (self.expression(*a, Binding::Call), table_names(usize::from(*curve)));
+                if *order == Function::LAST_ORDER {
+                    return (quote! { #a.spline_third(&#knots, &#pieces) }, Binding::Call);
+                }
+                let order = index(usize::from(*order));
+                (quote! { #a.spline(&#knots, &#pieces)[#order] }, Binding::Call)
             }
             Operation::Call(function, [a, b]) => {
                 let (name, a) = (ident(function.name()), self.expression(*a, Binding::Call));

@@ -9,6 +9,7 @@ use rustc_hash::FxHashMap as HashMap;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::hash::{Hash, Hasher};
+use std::sync::Arc;
 
 /// How many points of the domain are tried.
 pub const POINTS: u32 = 16;
@@ -29,6 +30,8 @@ pub struct Domains {
     tables: Vec<Spline>,
     /// Where states start.
     states: Vec<f64>,
+    /// Tables of curves that are called, by their places among all tables.
+    pub curves: Arc<[Spline]>,
     /// Of joint coordinates a value and the largest distance from it.
     coordinates: BTreeMap<usize, (f64, f64)>,
     /// Rates at the start.
@@ -44,8 +47,20 @@ impl Default for Domains {
         let (coordinates, orientations) = (BTreeMap::new(), Vec::new());
         let (parameters, inputs, rates) = (Vec::new(), Vec::new(), Vec::new());
         let (tables, states, known) = (Vec::new(), Vec::new(), Vec::new());
-        let (t_end, size) = (1.0, 1.0);
-        Self { t_end, size, parameters, inputs, tables, states, coordinates, rates, orientations, known }
+        let (t_end, size, curves) = (1.0, 1.0, Arc::from([]));
+        Self {
+            t_end,
+            size,
+            parameters,
+            inputs,
+            tables,
+            states,
+            curves,
+            coordinates,
+            rates,
+            orientations,
+            known,
+        }
     }
 }
 

@@ -4,7 +4,8 @@ use crate::expr::graph::{ExprId, Graph};
 use gyro_program::elementary::Function;
 use num_traits::Float;
 
-/// The value at some operands; of one operand the second one is of no matter.
+/// The value at some operands; of one operand the second one is of no matter. Those of curves are in
+/// `calls`.
 pub fn value<F: Float>(function: Function, [x, y]: [F; 2]) -> F {
     match function {
         Function::Sqrt => x.sqrt(),
@@ -20,6 +21,7 @@ pub fn value<F: Float>(function: Function, [x, y]: [F; 2]) -> F {
         Function::When | Function::Unless if x.is_nan() => x,
         Function::When => select(x > F::zero(), y),
         Function::Unless => select(x <= F::zero(), y),
+        Function::Curve { .. } => F::nan(),
     }
 }
 
@@ -43,6 +45,7 @@ pub fn slopes_at(function: Function, [x, y]: [f64; 2], value: f64) -> [f64; 2] {
         Function::Abs => [f64::from(i8::from(x > 0.0) - i8::from(x < 0.0)), 0.0],
         Function::Floor => [0.0, 0.0],
         Function::When | Function::Unless => [0.0, self::value(function, [x, 1.0])],
+        Function::Curve { .. } => [f64::NAN, 0.0],
     }
 }
 
@@ -77,6 +80,9 @@ pub fn slopes(graph: &mut Graph, function: Function, [a, b]: [ExprId; 2], call: 
             graph.sub(positive, negative)
         }
         Function::Floor => Graph::ZERO,
+        Function::Curve { curve, order } => {
+            graph.call(Function::Curve { curve, order: order.saturating_add(1) }, [a; 2])
+        }
         Function::When | Function::Unless => {
             return [Graph::ZERO, graph.call(function, [a, Graph::ONE])];
         }

@@ -1,8 +1,8 @@
 //! Evaluates expressions numerically; shares no code with simplification.
 
 use crate::expr::by_expr::ByExpr;
-use crate::expr::domains::between;
-use crate::expr::elementary;
+use crate::expr::calls;
+use crate::expr::domains::{Domains, between};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use num_traits::Float;
@@ -15,6 +15,7 @@ pub struct Program<'g> {
     /// Constants as they are rounded, one for each step.
     constants: Vec<f64>,
     roots: Vec<usize>,
+    domains: &'g Domains,
 }
 
 impl<'g> Program<'g> {
@@ -29,7 +30,8 @@ impl<'g> Program<'g> {
             constants.push(if let Node::Constant(constant) = node { constant.to_f64() } else { 0.0 });
             places.insert(id, steps.len() - 1);
         }
-        Self { steps, constants, roots: roots.iter().map(|root| places[*root]).collect() }
+        let roots = roots.iter().map(|root| places[*root]).collect();
+        Self { steps, constants, roots, domains: &graph.domains }
     }
 
     /// The values of the roots, each symbol having the value that `value` gives it.
@@ -44,7 +46,7 @@ impl<'g> Program<'g> {
                 Node::Mul(..) => operand(a) * operand(b),
                 Node::Neg(_) => -operand(a),
                 Node::Recip(_) => operand(a).recip(),
-                Node::Call(function, _) => elementary::value(*function, [operand(a), operand(b)]),
+                Node::Call(function, _) => calls::value(self.domains, *function, [operand(a), operand(b)]),
             };
             values.push(result);
         }

@@ -250,6 +250,7 @@ impl Graph {
         let Properties { arity, parity, at_zero, .. } = function.properties();
         match (function, operands, at_zero) {
             (_, [Self::ZERO, _], Some(value)) => return self.integer(value),
+            (Function::Curve { order, .. }, ..) if order > Function::LAST_ORDER => return Self::ZERO,
             (Function::Sqrt, [a, _], _) => {
                 if let Some(root) = self.as_constant(a).and_then(Constant::sqrt) {
                     return self.constant(root);

@@ -1,6 +1,7 @@
 //! Expressions: the graph, exact constants, derivatives, and the order in which expressions are computed.
 
 pub mod by_expr;
+pub mod calls;
 pub mod constant;
 pub mod definitions;
 pub mod differentiate;

@@ -7,8 +7,8 @@
 //! the root alone, not on what else has been derived before it.
 
 use crate::expr::by_expr::ByExpr;
+use crate::expr::calls;
 use crate::expr::domains::POINTS;
-use crate::expr::elementary;
 use crate::expr::graph::{ExprId, Graph, Node};
 use gyro_program::elementary::Function;
 
@@ -126,8 +126,8 @@ impl<'g> Step<'g> {
             Node::Neg(_) => (-x, [-1.0, 0.0]),
             Node::Recip(_) => (x.recip(), [-x.recip().powi(2), 0.0]),
             Node::Call(function, _) => {
-                let value = elementary::value(*function, [x, y]);
-                (value, elementary::slopes_at(*function, [x, y], value))
+                let value = calls::value(&graph.domains, *function, [x, y]);
+                (value, calls::slopes(&graph.domains, *function, [x, y], value))
             }
         };
         Evaluated { value, slopes }

@@ -2,6 +2,8 @@
 
 use crate::expr::by_expr::ByExpr;
 use crate::expr::graph::{ExprId, Graph, Node};
+use crate::expr::symbol::Symbol;
+use gyro_program::elementary::Function;
 use rustc_hash::FxHashSet as HashSet;
 use std::fmt;
 
@@ -39,6 +41,8 @@ impl Operations {
                 Node::Mul(a, b) if uses.quotient(graph, *a, *b).is_some() => {}
                 Node::Mul(..) => operations.multiplications += 1,
                 Node::Recip(_) => operations.divisions += 1,
+                // Tables at the time count as variables, as those of motions do.
+                Node::Call(Function::Curve { .. }, [at, _]) if is_time(graph, *at) => {}
                 Node::Call(..) => operations.functions += 1,
             }
         }
@@ -49,6 +53,10 @@ impl Operations {
     pub fn total(&self) -> usize {
         self.additions + self.multiplications + self.divisions
     }
+}
+
+fn is_time(graph: &Graph, id: ExprId) -> bool {
+    *graph.node(id) == Node::Symbol(Symbol::Time)
 }
 
 impl fmt::Display for Operations {

@@ -132,6 +132,13 @@ impl<V, C> Default for Kernel<V, C> {
     }
 }
 
+impl<V, C> Kernel<V, C> {
+    /// The curves that it calls, as often as it calls them.
+    pub fn curves(&self) -> impl Iterator<Item = u16> {
+        self.outside.curves().chain(self.loops.iter().flat_map(|each| each.body.curves()))
+    }
+}
+
 impl<V, C> Tape<V, C> {
     /// The operation that gives a number.
     pub fn operation(&self, place: Place) -> &Operation<V, C> {
@@ -142,6 +149,14 @@ impl<V, C> Tape<V, C> {
     pub fn variables(&self) -> impl Iterator<Item = &V> {
         self.operations.iter().filter_map(|operation| match operation {
             Operation::Variable(variable) => Some(variable),
+            _ => None,
+        })
+    }
+
+    /// The curves that it calls, as often as it calls them.
+    pub fn curves(&self) -> impl Iterator<Item = u16> {
+        self.operations.iter().filter_map(|operation| match operation {
+            Operation::Call(Function::Curve { curve, .. }, _) => Some(*curve),
             _ => None,
         })
     }

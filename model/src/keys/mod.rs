@@ -12,7 +12,7 @@ pub use bodies::{BODY, DRIVEN, ELEMENTS, POINT_MASS, ROTATION, SHAPE};
 pub use file::{FILE, GENERATE, INPUT, MOTION, SIMULATION, SINUSOID};
 pub use forces::{FORCE, FORCE_END};
 pub use joints::{COUPLER, COUPLER_END, DRIVER, JOINT, JOINT_END};
-pub use observed::{CONTACT, CONTROLLER, EVENT, FORMULA, OUTPUT, STATE};
+pub use observed::{CONTACT, CONTROLLER, CURVE, EVENT, FORMULA, OUTPUT, STATE};
 
 /// A table of the model file.
 #[derive(Debug)]

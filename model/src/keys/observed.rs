@@ -143,6 +143,35 @@ pub static EVENT: Table = Table::new(
     ],
 );
 
+const JOINED: &[(&str, &str)] = &[
+    ("smooth", "a natural cubic spline, two continuous derivatives"),
+    ("monotone", "cubics that rise and fall as the points do, a continuous slope"),
+    ("linear", "straight lines"),
+    ("steps", "the point before"),
+];
+const BEYOND: &[(&str, &str)] =
+    &[("line", "straight on"), ("hold", "the value at the end"), ("error", "no value: a run ends")];
+
+/// `[[curve]]`.
+pub static CURVE: Table = Table::new(
+    "curve",
+    "A function of one argument that formulas call by its name, see [laws](laws.md#curves): of a table, or of points.",
+    &[
+        name("name, unlike those of functions, joints, outputs, parameters, inputs and formulas"),
+        text("table", "name of a CSV file, looked for from the folder of the model file")
+            .eg("table = \"file.csv\", or points = [[0, 0], [1, 2]]")
+            .or("none"),
+        Key::new("columns", Value::Texts(2, 2), "of a table: the names of its columns of argument and value")
+            .eg("columns = [\"x\", \"y\"]: argument and value")
+            .or("its two columns"),
+        Key::new("points", Value::Rows, "in place of a table: a list of points `[argument, value]`")
+            .eg("points = [[0, 0], [1, 2]]")
+            .or("none"),
+        word("between", JOINED, "what it is between its points").or("\"smooth\""),
+        word("beyond", BEYOND, "what it is beyond its ends").or("\"line\""),
+    ],
+);
+
 /// `[[formula]]`.
 pub static FORMULA: Table = Table::new(
     "formula",

@@ -33,7 +33,7 @@ pub enum Operation {
     Quotient(usize, usize),
     /// A whole power, of which the exponent is neither 0 nor 1.
     Power(usize, i32),
-    /// An elementary function; of one operand both are the same.
+    /// An elementary function, or a curve of the model; of one operand both are the same.
     Call(Function, [usize; 2]),
 }
 
@@ -86,6 +86,26 @@ impl Formula {
     pub fn sees(&self) -> impl Iterator<Item = Seen> {
         self.operations.iter().filter_map(|operation| match operation {
             Operation::Seen(seen) => Some(*seen),
+            _ => None,
+        })
+    }
+
+    /// All curves that it calls, by their places among the model's.
+    pub fn curves(&self) -> impl Iterator<Item = usize> {
+        self.operations.iter().filter_map(|operation| match operation {
+            Operation::Call(Function::Curve { curve, .. }, _) => Some(usize::from(*curve)),
+            _ => None,
+        })
+    }
+
+    /// Those of them whose argument is this number itself.
+    pub fn curves_of(&self, seen: Seen) -> impl Iterator<Item = usize> {
+        self.operations.iter().filter_map(move |operation| match operation {
+            Operation::Call(Function::Curve { curve, .. }, [a, _])
+                if self.operations[*a] == Operation::Seen(seen) =>
+            {
+                Some(usize::from(*curve))
+            }
             _ => None,
         })
     }

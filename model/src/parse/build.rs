@@ -2,7 +2,7 @@
 
 use super::computed::{MOST_WEIGHT, root};
 use crate::number::in_range;
-use crate::{Number, Operation, Rational};
+use crate::{Curve, Number, Operation, Rational};
 use gyro_program::elementary::Function;
 use num_traits::Signed;
 
@@ -70,6 +70,19 @@ impl Build {
         let taken = if a == zero { zero } else { self.call(Function::When, [margin, a]) };
         let other = if b == zero { zero } else { self.call(Function::Unless, [margin, b]) };
         self.sum(taken, other)
+    }
+
+    /// The value of a curve. Where it has none a root has none, and with it the condition.
+    pub(super) fn curve(&mut self, (index, curve): (usize, &Curve), x: usize) -> usize {
+        let value = self.call(Function::curve(index, 0), [x; 2]);
+        let Some(ends) = curve.domain() else { return value };
+        let [first, last] = ends.map(|end| self.exact(Rational::from_float(end).expect("it is finite")));
+        let (from, to) = (self.difference(x, first), self.difference(last, x));
+        let within = self.product(from, to);
+        let root = self.root(within);
+        let one = self.integer(1);
+        let condition = self.sum(one, root);
+        self.call(Function::When, [condition, value])
     }
 
     /// The square root; of a number it is one.

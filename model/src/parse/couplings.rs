@@ -5,7 +5,7 @@ use super::laws;
 use super::lookup::wrong_within;
 use super::reader::Reader;
 use super::section::Section;
-use super::{motion, references, seen, tables};
+use super::{curves, motion, references, seen, tables};
 use crate::validate::{Owner, Side};
 use crate::{Coupler, Coupling, Driver, Formula, JointCoordinate, Seen};
 
@@ -61,6 +61,9 @@ fn by_formula(reader: &mut Reader<'_>, section: &Section<'_>, second: JointCoord
         read.map_err(|fault| wrong_within(reader, item, text, fault)).ok()
     });
     let formula = formula.unwrap_or_else(Formula::zero);
+    if let Some((item, _)) = text {
+        curves::refuse_kinks(reader, item, &formula, "a coupler");
+    }
     let (found, most) = (formula.uses().count(), Coupler::MOST - 1);
     if let Some((item, _)) = text.filter(|_| found > most) {
         let message = format!("the formula of {} names {found} joint coordinates", section.title);

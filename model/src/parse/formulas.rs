@@ -8,7 +8,7 @@ use super::names;
 use super::seen::Known;
 use super::units::pi;
 use crate::number::in_range;
-use crate::{Formula, Model, Number, Operation, Seen, parse_decimal};
+use crate::{Curve, Formula, Model, Number, Operation, Seen, parse_decimal};
 
 /// What names in formulas mean, and which of them a place allows.
 pub(super) struct Named<'m> {
@@ -24,6 +24,8 @@ pub(super) struct Named<'m> {
     pub(super) refused_inputs: &'m [String],
     /// Formulas that have a name.
     pub(super) formulas: &'m [(String, Formula)],
+    /// Curves, in the order of the model.
+    pub(super) curves: &'m [Curve],
     /// What may not stand here: message, label and help.
     pub(super) refuse: &'m dyn Fn(&str, Seen) -> Option<[String; 3]>,
 }
@@ -121,7 +123,7 @@ impl Reading<'_, '_> {
 
     /// A call of a function.
     fn call(&mut self, term: &Term, name: &str, operands: &[Term]) -> Result<usize, Fault> {
-        functions::check(term, name, operands.len())?;
+        functions::check(term, name, operands.len(), self.named.curves)?;
         match (name, operands) {
             ("if", [condition, a, b]) => {
                 let chosen = [self.of(a)?, self.of(b)?];
@@ -150,7 +152,11 @@ impl Reading<'_, '_> {
                     };
                     return Err(fault(divisor, "a formula divides by zero", help));
                 }
-                Ok(functions::value(&mut self.build, name, &places))
+                let mut curves = self.named.curves.iter().enumerate();
+                Ok(match curves.find(|(_, curve)| curve.name == name) {
+                    Some((index, curve)) => self.build.curve((index, curve), places[0]),
+                    None => functions::value(&mut self.build, name, &places),
+                })
             }
         }
     }
@@ -303,6 +309,7 @@ pub(crate) fn formula_of(model: &Model, text: &str) -> Result<Formula, String> {
         inputs: Inputs::Unknown,
         refused_inputs: &inputs,
         formulas,
+        curves: &model.curves,
         refuse: &any,
     };
     named.varying(text).map_err(|Fault { words: [message, _, help], .. }| format!("{message}; {help}"))

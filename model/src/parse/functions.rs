@@ -4,7 +4,7 @@ use super::build::Build;
 use super::computed::{Fault, here};
 use super::expression::Term;
 use super::names;
-use crate::{Rational, parse_decimal};
+use crate::{Curve, Rational, parse_decimal};
 use gyro_program::elementary::Function;
 
 /// Their names, each with what it takes.
@@ -39,10 +39,18 @@ const ALL: [(&str, &str); 25] = [
 /// ln 10.
 const LN_10: &str = "2.302585092994045684017991454684364207601101488";
 
-/// Whether there is such a function, of so many operands.
-pub(super) fn check(term: &Term, name: &str, n_operands: usize) -> Result<(), Fault> {
-    let Some((_, takes)) = ALL.iter().find(|(known, _)| *known == name) else {
-        let known: Vec<&str> = ALL.iter().map(|(name, _)| *name).collect();
+/// Whether a name has its meaning in every formula.
+pub(super) fn is_function(name: &str) -> bool {
+    ALL.iter().any(|(known, _)| *known == name) || ["and", "or"].contains(&name)
+}
+
+/// Whether there is such a function, or such a curve, of so many operands.
+pub(super) fn check(term: &Term, name: &str, n_operands: usize, curves: &[Curve]) -> Result<(), Fault> {
+    let of_curve = curves.iter().find(|curve| curve.name == name).map(|_| "x");
+    let of_function = ALL.iter().find(|(known, _)| *known == name).map(|(_, takes)| *takes);
+    let Some(takes) = of_curve.or(of_function) else {
+        let curves = curves.iter().map(|curve| curve.name.as_str());
+        let known: Vec<&str> = ALL.iter().map(|(name, _)| *name).chain(curves).collect();
         let help = if name == "log" {
             "write ln(...) or log10(...)".to_owned()
         } else {

@@ -130,6 +130,7 @@ pub(super) fn with_names<T>(
         inputs,
         refused_inputs: refused,
         formulas: &reader.formulas,
+        curves: &reader.curves,
         refuse,
     })
 }

@@ -6,6 +6,7 @@ mod computed;
 mod contacts;
 mod controllers;
 mod couplings;
+mod curves;
 mod driven;
 mod events;
 mod expression;

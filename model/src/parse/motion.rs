@@ -6,7 +6,7 @@ use super::formulas::Inputs;
 use super::numbers::{number, radians, turns};
 use super::reader::Reader;
 use super::section::{Item, Section, all, found};
-use super::{expression, laws, lookup, names, seen, table};
+use super::{curves, expression, laws, lookup, names, seen, table};
 use crate::keys::{MOTION, SINUSOID};
 use crate::{Motion, Number, Operation, Seen};
 
@@ -74,10 +74,13 @@ fn in_time(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Motion
     };
     let known = seen::known(reader, &[]);
     match laws::with_names(reader, &known, Inputs::Unknown, &refuse, |named| named.formula(text)) {
-        Ok(formula) => Some(match formula.operations.as_slice() {
-            [Operation::Number(number)] => Motion::Polynomial(vec![number.clone()]),
-            _ => Motion::Formula(formula),
-        }),
+        Ok(formula) => {
+            curves::refuse_kinks(reader, item, &formula, "a motion");
+            Some(match formula.operations.as_slice() {
+                [Operation::Number(number)] => Motion::Polynomial(vec![number.clone()]),
+                _ => Motion::Formula(formula),
+            })
+        }
         Err(fault) => {
             lookup::wrong_within(reader, item, text, fault);
             None

@@ -8,8 +8,8 @@ use super::names;
 use super::reader::Reader;
 use super::section::{Section, keyword};
 use super::{
-    bodies, contacts, controllers, couplings, events, forces, joints, named_formulas, outputs, parameters,
-    point_masses, seen, simulation, states,
+    bodies, contacts, controllers, couplings, curves, events, forces, joints, named_formulas, outputs,
+    parameters, point_masses, seen, simulation, states,
 };
 use crate::keys::{FILE, GENERATE};
 use crate::validate::{Owner, Place};
@@ -26,6 +26,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let counts_work = page.flag(reader, "count_work");
     let functions = functions(reader, &page);
     let simulation = simulation::read(reader, &page);
+    curves::read(reader, &page);
     let (mut bodies, point_masses): (Vec<_>, Vec<_>) = bodies::read(reader, &page).into_iter().unzip();
     let joints = joints::read(reader, &page);
     let couplers = couplings::couplers(reader, &page);
@@ -70,6 +71,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         couplers,
         drivers,
         forces,
+        curves: std::mem::take(&mut reader.curves),
         formulas: std::mem::take(&mut reader.formulas),
         states,
         outputs,

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::diagnostics::{Diagnostic, Related};
 use crate::validate::{Owner, Place, Problem};
-use crate::{Formula, JointKind, Number, OutputKind, Rational, Seen};
+use crate::{Curve, Formula, JointKind, Number, OutputKind, Rational, Seen};
 
 /// Gets the text of a table by the path that the model file gives.
 pub(super) type Load<'t> = dyn FnMut(&str) -> Result<String, String> + 't;
@@ -35,6 +35,8 @@ pub(super) struct Reader<'t> {
     pub(super) visible: Vec<(String, Seen)>,
     /// What these outputs are.
     pub(super) outputs: Vec<OutputKind>,
+    /// Curves that formulas may call.
+    pub(super) curves: Vec<Curve>,
     /// Formulas that have a name.
     pub(super) formulas: Vec<(String, Formula)>,
     /// Kinds of its joints, likewise.
@@ -74,6 +76,7 @@ impl<'t> Reader<'t> {
             names: HashMap::new(),
             visible: Vec::new(),
             outputs: Vec::new(),
+            curves: Vec::new(),
             formulas: Vec::new(),
             joint_kinds: Vec::new(),
             taken: HashMap::new(),

@@ -363,6 +363,7 @@ impl<'t> Item<'t> {
         let known: Vec<&'static str> = words.iter().map(|(word, _)| *word).collect();
         let words = match self.key.name {
             "between" => ("way between rows", "way"),
+            "beyond" => ("way beyond the ends", "way"),
             "coordinates" => ("coordinates", "word"),
             name => (name, name),
         };

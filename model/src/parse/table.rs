@@ -1,4 +1,4 @@
-//! Tables of a motion: two columns of a CSV file, joined by a smooth curve or by straight lines.
+//! Tables of motions and curves: two columns of a CSV file, of a motion joined by a smooth curve or by straight lines.
 
 use super::names;
 use super::reader::Reader;
@@ -7,6 +7,29 @@ use crate::{Lines, Motion, Spline};
 
 /// A table that cannot be used: what is wrong, a few words for the place in the model file, and what to do.
 type Refusal = [String; 3];
+
+/// What the first of two columns is called, with examples of names of both.
+struct Words {
+    first: &'static str,
+    names: [&'static str; 2],
+}
+
+const OF_MOTIONS: Words = Words { first: "time", names: ["t", "angle"] };
+const OF_CURVES: Words = Words { first: "argument", names: ["x", "y"] };
+
+/// The points of the table that a curve names, through the caller's `load`.
+pub(super) fn of_curve(
+    reader: &mut Reader<'_>,
+    item: Item<'_>,
+    of_columns: Option<Item<'_>>,
+) -> Option<Vec<(f64, f64)>> {
+    let columns = of_columns.map(|item| columns(reader, item));
+    let path = item.text(reader)?;
+    let columns = columns.map_or(Some(None), |columns| columns.map(Some))?;
+    let text = reader.load(path).map_err(|reason| not_loaded(path, &reason));
+    let points = text.and_then(|text| points(path, &text, columns, &OF_CURVES));
+    points.map_err(|words| item.wrong(reader, words)).ok()
+}
 
 /// Reads the table that a motion names, through the caller's `load`.
 pub(super) fn read(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_>) -> Option<Motion> {
@@ -18,7 +41,7 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_
         None => None,
     };
     let motion = reader.load(path).map_err(|reason| not_loaded(path, &reason)).and_then(|text| {
-        let points = points(path, &text, columns)?;
+        let points = points(path, &text, columns, &OF_MOTIONS)?;
         let help = "write increasing times, and values of moderate size";
         let motion = if is_smooth {
             Spline::natural(path.to_owned(), &points).map(Motion::Table)
@@ -40,23 +63,33 @@ fn columns<'t>(reader: &mut Reader<'_>, item: Item<'t>) -> Option<[&'t str; 2]> 
     names
 }
 
-/// The rows of a table as times and values.
-fn points(path: &str, text: &str, columns: Option<[&str; 2]>) -> Result<Vec<(f64, f64)>, Refusal> {
+/// The rows of a table as times, or arguments, and values.
+fn points(
+    path: &str,
+    text: &str,
+    columns: Option<[&str; 2]>,
+    words: &Words,
+) -> Result<Vec<(f64, f64)>, Refusal> {
+    let first = words.first;
     let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let broken = |error: csv::Error| {
         refusal(path, &reason(&error), "write a header and rows of the same length, separated by commas")
     };
     let header = table.headers().map_err(broken)?.clone();
-    let [time, value] = find_columns(path, &header, columns)?;
+    let [time, value] = find_columns(path, &header, columns, words)?;
     let mut points: Vec<(f64, f64)> = Vec::new();
     for record in table.records() {
         let record = record.map_err(broken)?;
         let line = record.position().map_or(0, csv::Position::line);
         let point = (field(path, &record, time, line)?, field(path, &record, value, line)?);
         if points.last().is_some_and(|last| last.0 >= point.0) {
-            let reason =
-                format!("line {line}: the time {:?} is not after {:?}", point.0, points[points.len() - 1].0);
-            return Err(refusal(path, &reason, "sort the rows by time and keep one row for each time"));
+            let reason = format!(
+                "line {line}: the {first} {:?} is not after {:?}",
+                point.0,
+                points[points.len() - 1].0
+            );
+            let help = format!("sort the rows by {first} and keep one row for each {first}");
+            return Err(refusal(path, &reason, &help));
         }
         points.push(point);
     }
@@ -85,18 +118,20 @@ fn find_columns(
     path: &str,
     header: &csv::StringRecord,
     columns: Option<[&str; 2]>,
+    Words { first, names: [x, y] }: &Words,
 ) -> Result<[usize; 2], Refusal> {
     let known: Vec<&str> = header.iter().collect();
     if known.is_empty() {
-        return Err(refusal(path, "it is empty", "write a header and at least two rows, such as `t,angle`"));
+        let help = format!("write a header and at least two rows, such as `{x},{y}`");
+        return Err(refusal(path, "it is empty", &help));
     }
     if known.iter().all(|name| name.parse::<f64>().is_ok()) {
-        let help = "write the names of the columns on the first line, such as `t,angle`";
-        return Err(refusal(path, "its first line has numbers instead of names", help));
+        let help = format!("write the names of the columns on the first line, such as `{x},{y}`");
+        return Err(refusal(path, "its first line has numbers instead of names", &help));
     }
     let Some(columns) = columns else {
         let help = format!(
-            "name the time and the value: columns = [\"t\", \"angle\"]; it has {}",
+            "name the {first} and the value: columns = [\"{x}\", \"{y}\"]; it has {}",
             names::list(&known)
         );
         let reason = format!("it has {} column{}", known.len(), if known.len() == 1 { "" } else { "s" });
@@ -128,7 +163,7 @@ fn in_range(value: f64) -> bool {
     value == 0.0 || (1e-100..=1e100).contains(&value.abs())
 }
 
-fn refusal(path: &str, reason: &str, help: &str) -> Refusal {
+pub(super) fn refusal(path: &str, reason: &str, help: &str) -> Refusal {
     [format!("table `{path}` cannot be used"), reason.to_owned(), help.to_owned()]
 }
 

@@ -61,6 +61,7 @@ pub(crate) enum Owner {
     Force(usize),
     ForceEnd(usize, Side),
     Output(usize),
+    Curve(usize),
     Formula(usize),
     State(usize),
     Controller(usize),

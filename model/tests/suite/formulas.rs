@@ -73,6 +73,7 @@ fn call(function: Function, x: f64, y: f64) -> f64 {
                 0.0
             }
         }
+        Function::Curve { .. } => panic!("no curve is named here"),
         Function::Unless => {
             if x > 0.0 {
                 0.0

@@ -158,6 +158,58 @@ impl Page {
         self.elements += &format!("\n[[force]]\nname = \"of_states\"\nkind = \"motor\"\n{value}");
     }
 
+    /// Curves, and laws that call them, in a third of the model files, by dice of their own.
+    pub fn curves(&mut self, seed: u64) {
+        let mut dice = Dice::new(seed.rotate_left(29));
+        let coordinates = self.coordinates();
+        if coordinates.is_empty() || !dice.once_in(3) {
+            return;
+        }
+        let name = |(joint, coordinate): &(usize, &str)| match self.joints[*joint].kind.coordinates.len() {
+            1 => format!("j{joint}"),
+            _ => format!("j{joint}.{coordinate}"),
+        };
+        let places: Vec<String> = coordinates.iter().map(name).collect();
+        let rates: Vec<String> = places.iter().map(|name| format!("{name} rate")).collect();
+        let n_curves = 1 + dice.below(3);
+        for index in 0..n_curves {
+            let mut x = dice.between(-2.0, 0.0);
+            let mut point = |dice: &mut Dice| {
+                x += dice.between(0.2, 0.9);
+                format!("[{x:.3}, {:.3}]", dice.between(-1.0, 1.0))
+            };
+            let points: Vec<String> = (0..2 + dice.below(5)).map(|_| point(&mut dice)).collect();
+            let between = dice.pick(&["smooth", "smooth", "monotone", "linear", "steps"]);
+            let beyond = dice.pick(&["line", "hold"]);
+            self.elements += &format!(
+                "\n[[curve]]\nname = \"curve{index}\"\npoints = [{}]\nbetween = \"{between}\"\nbeyond = \"{beyond}\"\n",
+                points.join(", ")
+            );
+        }
+        let mut names: Vec<String> = places.iter().chain(&rates).cloned().collect();
+        names.push("t".to_owned());
+        let mut called = |names: &[String]| {
+            let of = Words { dice: &mut dice, names: names.to_vec() }.formula(1);
+            format!("curve{}({of})", dice.below(n_curves))
+        };
+        let (motor, told) = (called(&names), format!("{} + {}", called(&names), called(&names)));
+        let (energy, power) = (called(&places), called(&rates));
+        let on = coordinates[dice.below(coordinates.len())];
+        let keys = self.on(on.0, on.1);
+        self.elements += &match dice.below(3) {
+            0 => format!("\n[[force]]\nname = \"curved\"\nkind = \"motor\"\n{keys}value = \"-{motor}\"\n"),
+            1 => format!(
+                "\n[[force]]\nname = \"curved\"\nkind = \"potential\"\nenergy = \"0.3*({})^2 + {energy}\"\n",
+                places[0]
+            ),
+            _ => format!(
+                "\n[[force]]\nname = \"curved\"\nkind = \"dissipation\"\npower = \"0.2*({})^2*({power})^2\"\n",
+                rates[0]
+            ),
+        };
+        self.elements += &format!("\n[[output]]\nname = \"curve\"\nkind = \"formula\"\nof = \"{told}\"\n");
+    }
+
     fn motor(
         &mut self,
         dice: &mut Dice,

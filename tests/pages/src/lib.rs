@@ -62,6 +62,7 @@ fn text(mut page: Page, seed: u64) -> String {
     }
     page.elastic_outputs();
     page.laws(seed);
+    page.curves(seed);
     page.read();
     page.text()
 }

@@ -1,7 +1,7 @@
 //! Atoms drawn at random, one for each argument.
 
 use super::Atoms;
-use super::elementary::{Symmetry, symmetry};
+use super::elementary::{CURVES, Symmetry, symmetry};
 use crate::field::{Field, Modular, Prime};
 use crate::program::Function;
 use chacha20::ChaCha8Rng;
@@ -25,7 +25,7 @@ pub struct Drawn<'p, const L: usize> {
     circle: Table<[u64; L], (Modular<'p, L>, Modular<'p, L>)>,
     /// Of other functions the value at one operand or two.
     others: Table<Call<L>, Modular<'p, L>>,
-    splines: Table<(Vec<u64>, [u64; L]), [Modular<'p, L>; 3]>,
+    splines: Table<(Vec<u64>, [u64; L]), [Modular<'p, L>; 4]>,
     /// What stands for roots that do not exist.
     roots: Table<[u64; L], Modular<'p, L>>,
     missed: Cell<bool>,
@@ -184,14 +184,15 @@ impl<'p, const L: usize> Atoms<Modular<'p, L>> for Drawn<'p, L> {
             Function::Abs | Function::Floor => self.known_or_other(function, x),
             Function::When => self.condition(x).mul(y),
             Function::Unless => Modular::one(self.prime).sub(&self.condition(x)).mul(y),
+            Function::Curve { .. } => unreachable!("{CURVES}"),
             Function::Tanh | Function::Atan2 | Function::Ln => self.other(function, [x, y]),
         }
     }
 
-    fn spline(&self, table: &Spline, t: &Modular<'p, L>) -> [Modular<'p, L>; 3] {
-        let Some(t) = t.key() else { return [Modular::undefined(self.prime); 3] };
+    fn spline(&self, table: &Spline, t: &Modular<'p, L>) -> [Modular<'p, L>; 4] {
+        let Some(t) = t.key() else { return [Modular::undefined(self.prime); 4] };
         let bits = table.knots.iter().chain(table.pieces.iter().flatten()).map(|x| x.to_bits()).collect();
-        *self.splines.borrow_mut().entry((bits, t)).or_insert_with(|| [(); 3].map(|()| self.draw()))
+        *self.splines.borrow_mut().entry((bits, t)).or_insert_with(|| [(); 4].map(|()| self.draw()))
     }
 }
 

@@ -9,6 +9,9 @@ use astro_float_num::BigFloat;
 use gyro_model::Spline;
 use std::cmp::Ordering;
 
+/// Why [`Function::Curve`] is no atom by itself.
+pub(super) const CURVES: &str = "curves are with their tables, in `Node::Curve`";
+
 /// Atoms of floating-point numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Elementary;
@@ -30,7 +33,8 @@ pub(super) fn symmetry(function: Function) -> Symmetry {
         | Function::Ln
         | Function::Floor
         | Function::When
-        | Function::Unless => Symmetry::Neither,
+        | Function::Unless
+        | Function::Curve { .. } => Symmetry::Neither,
     }
 }
 
@@ -42,7 +46,7 @@ pub(crate) fn range_of_call(function: Function, [x, y]: [Range; 2]) -> Range {
     match function {
         Function::Sin | Function::Cos | Function::Tanh => Range::UNIT,
         Function::Sqrt => Range { low: x.low.max(0.0).sqrt(), high: x.high.max(0.0).sqrt(), ..x },
-        Function::Atan2 => Range::ANY,
+        Function::Atan2 | Function::Curve { .. } => Range::ANY,
         Function::Exp => {
             Range { low: libm::exp(x.low), high: libm::exp(x.high), is_nonzero: x.low > LEAST_EXPONENT }
         }
@@ -82,6 +86,7 @@ pub(crate) fn rate_of_call<F: Field>(
         // Positive numbers change as they do, negative ones the other way.
         Function::Abs => dx.map(|dx| atoms.when(x, dx).sub(&atoms.when(&x.neg(), dx))),
         Function::Floor => None,
+        Function::Curve { .. } => unreachable!("{CURVES}"),
         // What is not taken may change infinitely fast: zero is no factor of it.
         Function::When | Function::Unless => dy.map(|dy| atoms.call(function, [x, dy])),
     })
@@ -125,12 +130,13 @@ impl Atoms<f64> for Elementary {
             Function::Ln => libm::log(*x),
             Function::Abs => libm::fabs(*x),
             Function::Floor => libm::floor(*x),
+            Function::Curve { .. } => unreachable!("{CURVES}"),
             Function::When | Function::Unless => chosen(function, *x, *y),
         }
     }
 
-    fn spline(&self, table: &Spline, t: &f64) -> [f64; 3] {
-        table.value(*t)
+    fn spline(&self, table: &Spline, t: &f64) -> [f64; 4] {
+        table.jet(*t)
     }
 }
 
@@ -146,13 +152,14 @@ impl Atoms<f32> for Elementary {
             Function::Ln => libm::logf(*x),
             Function::Abs => libm::fabsf(*x),
             Function::Floor => libm::floorf(*x),
+            Function::Curve { .. } => unreachable!("{CURVES}"),
             Function::When | Function::Unless => chosen(function, *x, *y),
         }
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is what is meant")]
-    fn spline(&self, table: &Spline, t: &f32) -> [f32; 3] {
-        table.value(f64::from(*t)).map(|x| x as f32)
+    fn spline(&self, table: &Spline, t: &f32) -> [f32; 4] {
+        table.jet(f64::from(*t)).map(|x| x as f32)
     }
 }
 
@@ -168,32 +175,33 @@ impl<'c> Atoms<Real<'c>> for Elementary {
             Function::Ln => x.by(BigFloat::ln),
             Function::Abs => x.abs(),
             Function::Floor => x.floor(),
+            Function::Curve { .. } => unreachable!("{CURVES}"),
             Function::When => x.choose(y, &x.like(0.0)),
             Function::Unless => x.choose(&x.like(0.0), y),
         }
     }
 
     /// The piece is found as for an `f64`; it is evaluated in many bits, straight continuation included.
-    fn spline(&self, table: &Spline, t: &Real<'c>) -> [Real<'c>; 3] {
+    fn spline(&self, table: &Spline, t: &Real<'c>) -> [Real<'c>; 4] {
         let (knots, last) = (&table.knots, table.pieces.len());
         let past = knots.partition_point(|&knot| !t.is_less(&t.like(knot)));
         let piece = past.clamp(1, last) - 1;
         let u = t.sub(&t.like(knots[piece]));
         if past == 0 {
-            let [value, slope, _] = cubic(&table.pieces[0], &t.like(0.0));
-            return [value.add(&slope.mul(&u)), slope, t.like(0.0)];
+            let [value, slope, ..] = cubic(&table.pieces[0], &t.like(0.0));
+            return [value.add(&slope.mul(&u)), slope, t.like(0.0), t.like(0.0)];
         }
         let width = t.like(knots[last]).sub(&t.like(knots[piece]));
         if past > last && width.is_less(&u) {
-            let [value, slope, _] = cubic(&table.pieces[piece], &width);
-            return [value.add(&slope.mul(&u.sub(&width))), slope, t.like(0.0)];
+            let [value, slope, ..] = cubic(&table.pieces[piece], &width);
+            return [value.add(&slope.mul(&u.sub(&width))), slope, t.like(0.0), t.like(0.0)];
         }
         cubic(&table.pieces[piece], &u)
     }
 }
 
-/// Value, first and second derivative of a cubic.
-fn cubic<'c>(coefficients: &[f64; 4], u: &Real<'c>) -> [Real<'c>; 3] {
+/// Value and three derivatives of a cubic.
+fn cubic<'c>(coefficients: &[f64; 4], u: &Real<'c>) -> [Real<'c>; 4] {
     let horner = |coefficients: &[f64]| {
         coefficients.iter().rev().fold(u.like(0.0), |sum, &c| sum.mul(u).add(&u.like(c)))
     };
@@ -201,7 +209,8 @@ fn cubic<'c>(coefficients: &[f64; 4], u: &Real<'c>) -> [Real<'c>; 3] {
     let three_c3 = u.like(3.0).mul(&u.like(c3));
     let slope = horner(&[c1]).add(&u.mul(&u.like(2.0).mul(&u.like(c2)).add(&u.mul(&three_c3))));
     let bend = u.like(2.0).mul(&u.like(c2).add(&three_c3.mul(u)));
-    [horner(&[c0, c1, c2, c3]), slope, bend]
+    let third = u.like(2.0).mul(&three_c3);
+    [horner(&[c0, c1, c2, c3]), slope, bend, third]
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Degrees of atoms.
 
 use super::Atoms;
+use super::elementary::CURVES;
 use crate::field::{Degree, Field};
 use crate::program::Function;
 use gyro_model::Spline;
@@ -30,13 +31,14 @@ impl Atoms<Degree> for Formal {
             // A variable, or its reciprocal.
             Function::Exp => Degree::quotient(1.0, 1.0),
             Function::When | Function::Unless => Degree::polynomial(1.0).mul(y),
+            Function::Curve { .. } => unreachable!("{CURVES}"),
             Function::Tanh | Function::Atan2 | Function::Ln | Function::Abs | Function::Floor => {
                 Degree::polynomial(1.0)
             }
         }
     }
 
-    fn spline(&self, _: &Spline, _: &Degree) -> [Degree; 3] {
-        [Degree::polynomial(1.0); 3]
+    fn spline(&self, _: &Spline, _: &Degree) -> [Degree; 4] {
+        [Degree::polynomial(1.0); 4]
     }
 }

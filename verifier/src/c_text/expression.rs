@@ -65,11 +65,28 @@ impl Reader<'_> {
                 Ok(inner)
             }
             "m" => self.of_mechanism(),
+            _ if self.curve(&word).is_some() => self.called_curve(&word),
             _ => match function(&word) {
                 Some(function) => self.called(function),
                 None => self.named(&word),
             },
         }
+    }
+
+    /// The table of a function that is a curve, `name_curve_0`.
+    fn curve(&self, word: &str) -> Option<usize> {
+        word.strip_prefix(self.prefix)?.strip_prefix("_curve_")?.parse().ok()
+    }
+
+    /// Which derivative, and where.
+    fn called_curve(&mut self, word: &str) -> Result<Id, Refusal> {
+        let table = self.curve(word).ok_or_else(|| self.refused("a curve"))?;
+        self.expect("(")?;
+        let order = self.index()?;
+        self.expect(",")?;
+        let time = self.sum()?;
+        self.expect(")")?;
+        Ok(self.nodes.push(Node::Curve { table, order, time }))
     }
 
     fn called(&mut self, function: Function) -> Result<Id, Refusal> {

@@ -28,7 +28,7 @@ pub(super) struct Reader<'a> {
     pub(super) nodes: &'a mut Nodes,
     /// Named places.
     pub(super) numbers: &'a HashMap<String, usize>,
-    prefix: &'a str,
+    pub(super) prefix: &'a str,
     tokens: &'a [Token],
     at: usize,
     pub(super) held: HashMap<String, Held>,

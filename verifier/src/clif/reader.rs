@@ -56,6 +56,9 @@ struct Block<'t> {
     lines: Vec<Line<'t>>,
 }
 
+/// How many functions a curve has: its value and three derivatives.
+const N_ORDERS: usize = Function::LAST_ORDER as usize + 1;
+
 /// A function may run for so many instructions.
 const LONGEST: usize = 50_000_000;
 
@@ -244,8 +247,15 @@ impl Reader<'_> {
     }
 
     fn called(&mut self, function: &str, arguments: &[&str], line: &Line<'_>) -> Result<Node, Refusal> {
-        let function = self.functions.get(function).and_then(|&place| Function::ALL.get(place));
-        match (function, arguments) {
+        let place = self.functions.get(function).copied().unwrap_or(usize::MAX);
+        // Curves come after sine with cosine, value and derivatives of one after those of the other.
+        if let (Some(place), [at]) = (place.checked_sub(Function::ALL.len() + 1), arguments)
+            && place < N_ORDERS * self.arrays.curves
+        {
+            let time = self.number(at, line)?;
+            return Ok(Node::Curve { table: place / N_ORDERS, order: place % N_ORDERS, time });
+        }
+        match (Function::ALL.get(place), arguments) {
             (Some(function), [.., last]) if arguments.len() == function.arity() => {
                 Ok(Node::Call(*function, [self.number(arguments[0], line)?, self.number(last, line)?]))
             }

@@ -263,12 +263,8 @@ impl<'a> Reader<'a> {
         }
         match expression {
             Expr::MethodCall(call) if call.method == "spline" => {
-                let time = self.expression(&call.receiver)?;
-                let table = (0..self.sizes.tables).find(|k| {
-                    let expected = [format!("& KNOTS_{k}"), format!("& PIECES_{k}")];
-                    call.args.len() == 2 && call.args.iter().map(text).eq(expected)
-                });
-                table.map(|table| Known::Curve { table, time }).ok_or_else(|| refused(expression))
+                let (table, time) = self.curve(call)?;
+                Ok(Known::Curve { table, time })
             }
             Expr::Index(index) => match self.argument_element(&index.expr, &index.index)? {
                 Some(source) => Ok(Known::Value(self.push(Node::Read(source), expression.span()))),

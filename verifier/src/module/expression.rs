@@ -73,7 +73,21 @@ impl Reader<'_> {
         Ok(self.push(Node::Constant(occurrence), call.span()))
     }
 
+    /// `x.spline(&KNOTS_0, &PIECES_0)`, or another method with these arguments: which table, and where.
+    pub fn curve(&mut self, call: &ExprMethodCall) -> Result<(usize, Id), Refusal> {
+        let at = self.expression(&call.receiver)?;
+        let table = (0..self.sizes.tables).find(|k| {
+            let expected = [format!("& KNOTS_{k}"), format!("& PIECES_{k}")];
+            call.args.len() == 2 && call.args.iter().map(text).eq(expected)
+        });
+        table.map(|table| (table, at)).ok_or_else(|| refused(call))
+    }
+
     fn call(&mut self, call: &ExprMethodCall) -> Result<Id, Refusal> {
+        if call.method == "spline_third" {
+            let (table, time) = self.curve(call)?;
+            return Ok(self.push(Node::Curve { table, order: 3, time }, call.method.span()));
+        }
         let receiver = self.expression(&call.receiver)?;
         let arguments = call.args.iter().map(|a| self.expression(a)).collect::<Result<Vec<_>, _>>()?;
         let name = call.method.to_string();
@@ -91,6 +105,13 @@ impl Reader<'_> {
             return self.kept(index);
         }
         let place = self.place(&index.index)?;
+        if let Expr::MethodCall(call) = &*index.expr
+            && call.method == "spline"
+            && place < 3
+        {
+            let (table, time) = self.curve(call)?;
+            return Ok(self.push(Node::Curve { table, order: place, time }, index.span()));
+        }
         if matches!(&*index.expr, Expr::Field(_)) {
             if text(&index.expr) != "self . derived" || place >= self.sizes.derived {
                 return Err(refused(index));

@@ -1,4 +1,4 @@
-//! Tables of prescribed motions: the constants at the head of a module.
+//! Tables of prescribed motions and of curves: the constants at the head of a module.
 
 use crate::refusal::Refusal;
 use gyro_model::{Model, Motion, Spline};
@@ -27,15 +27,24 @@ pub fn read(model: &Model, text: &str) -> Result<(Vec<Spline>, String), Refusal>
     Ok((pairs.collect::<Result<_, _>>()?, emptied))
 }
 
-/// All tables that motions of the model follow.
+/// All tables of curves that equations call, and those that motions follow.
 pub fn of_model(model: &Model) -> Vec<&Spline> {
-    let mut tables = Vec::new();
+    let mut tables: Vec<&Spline> = of_curves(model).collect();
     model.drivers.iter().for_each(|driver| collect(&driver.motion, &mut tables));
     for motion in model.bodies.iter().filter_map(|body| body.motion.as_ref()) {
         motion.translation.iter().for_each(|m| collect(m, &mut tables));
         motion.rotations.iter().for_each(|(_, angle)| collect(angle, &mut tables));
     }
     tables
+}
+
+/// Whether a table is one of a curve that equations call.
+pub fn is_of_curve(model: &Model, table: &Spline) -> bool {
+    of_curves(model).any(|curve| (&curve.knots, &curve.pieces) == (&table.knots, &table.pieces))
+}
+
+fn of_curves(model: &Model) -> impl Iterator<Item = &Spline> {
+    model.curves_of_equations().into_iter().map(|curve| &model.curves[curve].spline)
 }
 
 fn collect<'m>(motion: &'m Motion, tables: &mut Vec<&'m Spline>) {

@@ -4,7 +4,7 @@
 use super::jet::Jet;
 use super::scope::Scope;
 use crate::field::Field;
-use gyro_model::{Model, Number, Rational, Seen, column, parse_decimal, pi, root};
+use gyro_model::{Beyond, Curve, Model, Number, Rational, Seen, column, parse_decimal, pi, root};
 
 /// What a formula may see of the mechanism.
 pub(super) type See<'s, F> = &'s dyn Fn(Seen) -> Option<Jet<F>>;
@@ -316,9 +316,23 @@ impl<'t, F: Field> Text<'t, '_, F> {
             }
             _ => {
                 let operands: Vec<_> = operands.into_iter().map(|operand| operand.jet).collect();
-                self.function(name, &operands).map(moving)
+                match (self.model.curve(name), operands.as_slice()) {
+                    (Some(curve), [x]) => self.curve(curve, x).map(moving),
+                    _ => self.function(name, &operands).map(moving),
+                }
             }
         }
+    }
+
+    /// A curve; beyond its ends it may have no value, as the root of what is negative there has none.
+    fn curve(&self, curve: &Curve, x: &Jet<F>) -> Option<Jet<F>> {
+        let value = self.scope.spline(&curve.spline, x);
+        if curve.beyond != Beyond::Error {
+            return Some(value);
+        }
+        let [first, last] = curve.ends.map(|end| Rational::from_float(end).map(|end| self.constant(end).jet));
+        let within = (x - first?) * (last? - x);
+        Some(self.scope.when(&(&self.scope.one + self.scope.sqrt(&within)?), &value))
     }
 
     fn choose(&self, condition: &Condition<F>, a: &Jet<F>, b: &Jet<F>) -> Jet<F> {

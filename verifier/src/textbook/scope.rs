@@ -82,7 +82,8 @@ impl<'a, F: Field> Scope<'a, F> {
     }
 
     pub fn spline(&self, table: &Spline, t: &Jet<F>) -> Jet<F> {
-        t.chain(self.atoms.spline(table, &t.value))
+        let [value, slope, bend, _] = self.atoms.spline(table, &t.value);
+        t.chain([value, slope, bend])
     }
 
     /// The numbers divided by the root of the sum of their squares; `None` if they are all zero.

@@ -1,17 +1,8 @@
 //! The numbers of tables. As tokens those of a long table would take most of the time of a generation, so they are
 //! written into the text.
 
+use crate::emit::names::{knots_name, pieces_name};
 use gyro_model::Spline;
-
-/// Name of the times of a table.
-pub fn knots_name(table: usize) -> String {
-    format!("KNOTS_{table}")
-}
-
-/// Name of its polynomials.
-pub fn pieces_name(table: usize) -> String {
-    format!("PIECES_{table}")
-}
 
 /// Fills the arrays of a module's text, which are empty, laid out as the rest of it is.
 pub fn with_numbers(text: String, tables: &[Spline]) -> String {

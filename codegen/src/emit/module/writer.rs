@@ -1,10 +1,9 @@
 //! What the parts of a module are written from, and how a function of it is written.
 
-use super::tables;
 use crate::emit::data_sheet::printable;
 use crate::emit::literals::Literals;
 use crate::emit::loops;
-use crate::emit::names::{ident, if_read, index};
+use crate::emit::names::{ident, if_read, index, table_names};
 use crate::emit::tokens::{self, Body};
 use crate::equations::Argument;
 use crate::expr::constant::Constant;
@@ -19,10 +18,6 @@ use std::collections::BTreeSet;
 
 fn table_of(symbol: &Symbol) -> Option<usize> {
     if let Symbol::Table { table, .. } = symbol { Some(*table) } else { None }
-}
-
-fn table_names(table: usize) -> (Ident, Ident) {
-    (ident(&tables::knots_name(table)), ident(&tables::pieces_name(table)))
 }
 
 /// Binds value and derivatives of a table's curve.
@@ -71,7 +66,9 @@ impl ModuleWriter<'_> {
         let tables = self.scheduled.curves.iter().enumerate().map(|(table, spline)| {
             let (knots, pieces) = table_names(table);
             let (n_knots, n_pieces) = (index(spline.knots.len()), index(spline.pieces.len()));
-            let doc = format!(" Times of the points of `{}`, s.", printable(&spline.source));
+            let n_curves = self.computed.equations.graph.domains.curves.len();
+            let [of, unit] = if table < n_curves { ["Arguments", ""] } else { ["Times", ", s"] };
+            let doc = format!(" {of} of the points of `{}`{unit}.", printable(&spline.source));
             quote! {
                 #[doc = #doc]
                 const #knots: [f64; #n_knots] = [];

@@ -79,6 +79,7 @@ fn called(function: Function) -> Elementary {
         Function::Floor => Elementary::Floor,
         Function::When => Elementary::When,
         Function::Unless => Elementary::Unless,
+        Function::Curve { .. } => unreachable!("it is none of all"),
     }
 }
 
