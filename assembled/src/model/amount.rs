@@ -38,24 +38,30 @@ pub(crate) enum Leaf<T> {
     Length,
     /// The rate of that.
     LengthRate,
+    /// A reading of the bushing whose strength it is.
+    Between(usize),
+    /// The rate of one.
+    BetweenRate(usize),
     /// A number among those of all outputs.
     Output(usize),
 }
 
-/// When a strength is asked for, and in a link at which distance of its ends and rate of that.
+/// When a strength is asked for, in a link at which distance of its ends and rate of that, and in a bushing at which
+/// readings and rates of these.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Now<'a, T: Number> {
     pub(crate) scene: &'a Scene<T>,
     pub(crate) at: Moment<'a, T>,
     pub(crate) line: [T; 2],
+    pub(crate) frames: Option<&'a [[T; 6]; 2]>,
     /// What is known of the numbers of outputs.
     pub(crate) outputs: &'a [T],
 }
 
 impl<'a, T: Number> Now<'a, T> {
-    /// Where no link is meant, and outputs are not known.
+    /// Where no link and no bushing is meant, and outputs are not known.
     pub(crate) fn new(scene: &'a Scene<T>, at: Moment<'a, T>) -> Self {
-        Self { scene, at, line: [T::zero(); 2], outputs: &[] }
+        Self { scene, at, line: [T::zero(); 2], frames: None, outputs: &[] }
     }
 }
 
@@ -120,6 +126,8 @@ impl<T: Number> Leaf<T> {
             Seen::Time => Self::Time,
             Seen::Length => Self::Length,
             Seen::LengthRate => Self::LengthRate,
+            Seen::Between(k) => Self::Between(k),
+            Seen::BetweenRate(k) => Self::BetweenRate(k),
             Seen::Coordinate(on) => {
                 Self::Coordinate(Path::Coordinate(Coordinate::of(&joints[on.joint], on.coordinate)))
             }
@@ -160,6 +168,8 @@ impl<T: Number> Leaf<T> {
             Self::Velocity(spot, number) => spot.velocity(&scene.motion(at, &spot.place))[*number],
             Self::Length => now.line[0],
             Self::LengthRate => now.line[1],
+            Self::Between(k) => now.frames.map_or(T::zero(), |[places, _]| places[*k]),
+            Self::BetweenRate(k) => now.frames.map_or(T::zero(), |[_, rates]| rates[*k]),
             Self::Output(place) => now.outputs.get(*place).copied().unwrap_or_else(T::zero),
         }
     }

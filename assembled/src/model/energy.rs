@@ -31,9 +31,13 @@ impl<T: Number> Lowered<T> {
             energy.potential -= body.mass * self.scene.gravity.dot(&r);
         }
         for element in &self.elements {
-            if let Element::Along { path, law } = element {
-                let now = Now::new(&self.scene, at);
-                energy.potential += law.potential(&now, || path.value(&self.scene, at));
+            match element {
+                Element::Along { path, law } => {
+                    let now = Now::new(&self.scene, at);
+                    energy.potential += law.potential(&now, || path.value(&self.scene, at));
+                }
+                Element::Between(between) => energy.potential += between.potential(&self.scene, at),
+                Element::Ball { .. } | Element::Load { .. } => {}
             }
         }
         for rotor in &self.rotors {

@@ -1,6 +1,7 @@
 //! Applied forces, paper, eqs. (21) and (22): gravity, damping in the joints, and the forces of the model file.
 
 use crate::model::amount::{Amount, Now};
+use crate::model::bushing::Between;
 use crate::model::joint::Joint;
 use crate::model::law::Law;
 use crate::model::measure::Coordinate;
@@ -17,6 +18,8 @@ use nalgebra::Vector3;
 pub(crate) enum Element<T> {
     /// A force along a coordinate, between two bodies.
     Along { path: Path<T>, law: Law<T> },
+    /// What acts between two frames.
+    Between(Between<T>),
     /// Viscous damping of a spherical joint: minus this times the relative angular velocity.
     Ball { joint: usize, damping: T },
     /// Force and torque on one body.
@@ -66,6 +69,10 @@ impl<T: Number> Element<T> {
                 let wanted = wanted.into_iter().filter(|(strength, _)| !strength.is_zero());
                 wanted.map(|(_, law)| Self::Along { path, law }).collect()
             }
+            ForceKind::Bushing(bushing) => {
+                let parts = Between::all(model, (places, joints), bushing).into_iter();
+                parts.map(Self::Between).collect()
+            }
             ForceKind::Load { body, point, force, torque, frame } => vec![Self::Load {
                 place: places.of(*body),
                 point: vector(model.values(point)),
@@ -99,7 +106,11 @@ impl<T: Number> Element<T> {
 
     /// Whether the energy counts what the element does.
     pub(crate) fn is_conservative(&self) -> bool {
-        matches!(self, Self::Along { law, .. } if law.is_conservative())
+        match self {
+            Self::Along { law, .. } => law.is_conservative(),
+            Self::Between(between) => between.is_conservative(),
+            Self::Ball { .. } | Self::Load { .. } => false,
+        }
     }
 
     /// Calls the sink with what the element exerts on each of its bodies, and that body's motion.
@@ -122,6 +133,7 @@ impl<T: Number> Element<T> {
                     sink(place, motion, wrench.times(force));
                 }
             }
+            Self::Between(between) => between.exert(scene, at, sink),
             Self::Ball { joint, damping } => {
                 let joint = &scene.joints[*joint];
                 let [i, j] = scene.motions(at, joint);

@@ -4,7 +4,7 @@ use crate::derive::dynamics::Dynamics;
 use crate::derive::forces;
 use crate::derive::joint_coordinate::Load;
 use crate::derive::kinematics::Kinematics;
-use crate::derive::laws::{self, OfBodies};
+use crate::derive::laws::{self, OfBodies, Own};
 use crate::derive::points::{self, by_axes};
 use crate::derive::system::System;
 use crate::expr::differentiate::Derivative;
@@ -83,7 +83,7 @@ fn formula_value(system: &mut System, sources: &Sources, formula: &Formula) -> E
             let kind = &system.model.outputs[output].kind;
             numbers(system, sources, kind)[number]
         }
-        seen => laws::see(system, &OfBodies, None, seen),
+        seen => laws::see(system, &OfBodies, Own::Nothing, seen),
     })
 }
 

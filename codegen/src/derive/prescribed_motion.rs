@@ -1,6 +1,6 @@
 //! Motions prescribed in time, as expressions.
 
-use crate::derive::laws::{self, OfBodies};
+use crate::derive::laws::{self, OfBodies, Own};
 use crate::derive::system::{Pose, System};
 use crate::expr::definitions::Definitions;
 use crate::expr::differentiate::{Derivative, Direction};
@@ -47,7 +47,7 @@ impl<'m> System<'m> {
             }
             Motion::Lines(lines) => self.line(lines),
             Motion::Formula(formula) => {
-                laws::value(self, formula, |system, seen| laws::see(system, &OfBodies, None, seen))
+                laws::value(self, formula, |system, seen| laws::see(system, &OfBodies, Own::Nothing, seen))
             }
         }
     }

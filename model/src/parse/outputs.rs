@@ -67,7 +67,8 @@ fn output(reader: &mut Reader<'_>, section: &Section<'_>, kind: &str) -> OutputK
     }
 }
 
-fn frame(reader: &mut Reader<'_>, section: &Section<'_>) -> BodyFrame {
+/// A frame of a body.
+pub(super) fn frame(reader: &mut Reader<'_>, section: &Section<'_>) -> BodyFrame {
     BodyFrame {
         body: references::index(reader, section, "body"),
         point: section.vector(reader, "point"),

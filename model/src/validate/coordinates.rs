@@ -134,18 +134,19 @@ fn contradicting_drivers(model: &Model, groups: &mut Groups) -> Vec<Problem> {
     found
 }
 
-/// A link from a body to itself, or a force that can move nothing.
+/// A link or a bushing from a body to itself, or a force that can move nothing.
 fn idle_force(model: &Model, index: usize) -> Option<Problem> {
     let force = &model.forces[index];
     let moves = |body: &usize| model.bodies.get(*body).is_none_or(|b| b.support.has_coordinates());
     match &force.kind {
-        ForceKind::Link { first: (first, _), second: (second, _), .. } => {
+        ForceKind::Link { .. } | ForceKind::Bushing(_) => {
+            let (word, [first, second]) = force.kind.between()?;
             let place = |side| Place { owner: Owner::ForceEnd(index, side), key: "body" };
             let (message, label) = if first == second {
-                (format!("link `{}` joins a body to itself", force.name), "the same body as the first")
-            } else if !moves(first) && !moves(second) {
+                (format!("{word} `{}` joins a body to itself", force.name), "the same body as the first")
+            } else if !moves(&first) && !moves(&second) {
                 (
-                    format!("link `{}` joins two bodies that it cannot move", force.name),
+                    format!("{word} `{}` joins two bodies that it cannot move", force.name),
                     "fixed or driven, too",
                 )
             } else {

@@ -17,10 +17,27 @@ pub(super) struct Slopes<F> {
     pub(super) along: Vec<(JointCoordinate, Jet<F>)>,
 }
 
+/// What the laws of links and bushings see of their own ends.
+pub(super) enum Own<'o, F> {
+    Nothing,
+    /// The distance of the ends of a link, and its rate.
+    Line([&'o Jet<F>; 2]),
+    /// The readings of a bushing, and their rates.
+    Frames([&'o [Jet<F>; 6]; 2]),
+}
+
+impl<F> Clone for Own<'_, F> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<F> Copy for Own<'_, F> {}
+
 impl<F: Field> Evaluation<'_, F> {
     /// A strength; `None` where it is not defined.
     pub(super) fn strength(&self, number: &Number) -> Option<Jet<F>> {
-        self.strength_along(number, None)
+        self.strength_of(number, Own::Nothing)
     }
 
     /// Three of them.
@@ -28,14 +45,16 @@ impl<F: Field> Evaluation<'_, F> {
         Some(Vector([self.strength(x)?, self.strength(y)?, self.strength(z)?]))
     }
 
-    /// A strength of a link, with the distance of its ends and the rate of that.
-    pub(super) fn strength_along(&self, number: &Number, line: Option<[&Jet<F>; 2]>) -> Option<Jet<F>> {
+    /// A strength of what sees its own ends.
+    pub(super) fn strength_of(&self, number: &Number, own: Own<'_, F>) -> Option<Jet<F>> {
         let Number::Formula(formula) = number else { return Some(self.scope.number(number)) };
-        let see = |seen| match seen {
-            Seen::Length => line.map(|[length, _]| length.clone()),
-            Seen::LengthRate => line.map(|[_, rate]| rate.clone()),
-            Seen::Output { output, number } => self.early(output, number).map(Jet::constant),
-            seen => self.sight(seen),
+        let see = |seen| match (seen, own) {
+            (Seen::Length, Own::Line([length, _])) => Some(length.clone()),
+            (Seen::LengthRate, Own::Line([_, rate])) => Some(rate.clone()),
+            (Seen::Between(k), Own::Frames([places, _])) => Some(places[k].clone()),
+            (Seen::BetweenRate(k), Own::Frames([_, rates])) => Some(rates[k].clone()),
+            (Seen::Output { output, number }, _) => self.early(output, number).map(Jet::constant),
+            (seen, _) => self.sight(seen),
         };
         self.read(&formula.text, &see)
     }
@@ -93,7 +112,11 @@ impl<F: Field> Evaluation<'_, F> {
             Seen::Time => Some(Jet::constant(self.scope.point.t.clone())),
             Seen::Coordinate(on) => self.coordinate(on, &self.still),
             Seen::Rate(on) => Some(self.coordinate_rate(on)),
-            Seen::Output { .. } | Seen::Length | Seen::LengthRate => None,
+            Seen::Output { .. }
+            | Seen::Length
+            | Seen::LengthRate
+            | Seen::Between(_)
+            | Seen::BetweenRate(_) => None,
         }
     }
 
