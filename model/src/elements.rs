@@ -382,6 +382,11 @@ pub enum OutputKind {
         /// Index into [`crate::Model::forces`], of a link.
         force: usize,
     },
+    /// Readings of a bushing (m and rad), and force or torque along each (N and N·m).
+    Bushing {
+        /// Index into [`crate::Model::forces`], of a bushing.
+        force: usize,
+    },
     /// The value of a formula.
     Formula(Formula),
     /// Kinetic and potential energy, J.
@@ -457,6 +462,20 @@ impl OutputKind {
             Self::Driver { .. } | Self::Coupler { .. } => &[("", "N*m or N")],
             Self::Spring { .. } => &[("force", "N*m or N"), ("deflection", "rad or m")],
             Self::Link { .. } => &[("force", "N"), ("length", "m")],
+            Self::Bushing { .. } => &[
+                ("x", "m"),
+                ("y", "m"),
+                ("z", "m"),
+                ("angle_x", "rad"),
+                ("angle_y", "rad"),
+                ("angle_z", "rad"),
+                ("force_x", "N"),
+                ("force_y", "N"),
+                ("force_z", "N"),
+                ("torque_x", "N*m"),
+                ("torque_y", "N*m"),
+                ("torque_z", "N*m"),
+            ],
             Self::Formula(_) => &[("", "1")],
             Self::Energy => &[("kinetic", "J"), ("potential", "J")],
             Self::Power => &[("non_conservative", "W"), ("drivers", "W")],

@@ -1,5 +1,6 @@
 //! Strengths of forces: constants, inputs, and formulas of what moves.
 
+use crate::model::between::Frames;
 use crate::model::joint::Joint;
 use crate::model::measure::Coordinate;
 use crate::model::path::Path;
@@ -42,6 +43,8 @@ pub(crate) enum Leaf<T> {
     Between(usize),
     /// The rate of one.
     BetweenRate(usize),
+    /// A reading of a bushing.
+    Seen(Box<Frames<T>>, usize),
     /// A number among those of all outputs.
     Output(usize),
 }
@@ -146,6 +149,12 @@ impl<T: Number> Leaf<T> {
                     }
                     _ => unreachable!("the output is one of a link"),
                 },
+                OutputKind::Bushing { force } if number < 6 => match &model.forces[*force].kind {
+                    ForceKind::Bushing(bushing) => {
+                        Self::Seen(Box::new(Frames::new(model, places, bushing)), number)
+                    }
+                    _ => unreachable!("the output is one of a bushing"),
+                },
                 _ => {
                     let before = model.outputs[..output].iter().map(|output| output.kind.columns().len());
                     Self::Output(before.sum::<usize>() + number)
@@ -170,6 +179,7 @@ impl<T: Number> Leaf<T> {
             Self::LengthRate => now.line[1],
             Self::Between(k) => now.frames.map_or(T::zero(), |[places, _]| places[*k]),
             Self::BetweenRate(k) => now.frames.map_or(T::zero(), |[_, rates]| rates[*k]),
+            Self::Seen(frames, k) => frames.readings(scene, at).seen[0][*k],
             Self::Output(place) => now.outputs.get(*place).copied().unwrap_or_else(T::zero),
         }
     }

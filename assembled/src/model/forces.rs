@@ -1,7 +1,7 @@
 //! Applied forces, paper, eqs. (21) and (22): gravity, damping in the joints, and the forces of the model file.
 
 use crate::model::amount::{Amount, Now};
-use crate::model::bushing::Between;
+use crate::model::bushing::{Bushing, Part};
 use crate::model::joint::Joint;
 use crate::model::law::Law;
 use crate::model::measure::Coordinate;
@@ -19,7 +19,7 @@ pub(crate) enum Element<T> {
     /// A force along a coordinate, between two bodies.
     Along { path: Path<T>, law: Law<T> },
     /// What acts between two frames.
-    Between(Between<T>),
+    Between(Box<Bushing<T>>, Part),
     /// Viscous damping of a spherical joint: minus this times the relative angular velocity.
     Ball { joint: usize, damping: T },
     /// Force and torque on one body.
@@ -70,8 +70,9 @@ impl<T: Number> Element<T> {
                 wanted.map(|(_, law)| Self::Along { path, law }).collect()
             }
             ForceKind::Bushing(bushing) => {
-                let parts = Between::all(model, (places, joints), bushing).into_iter();
-                parts.map(Self::Between).collect()
+                let bushing = Bushing::new(model, (places, joints), bushing);
+                let parts = bushing.parts().into_iter();
+                parts.map(|part| Self::Between(Box::new(bushing.clone()), part)).collect()
             }
             ForceKind::Load { body, point, force, torque, frame } => vec![Self::Load {
                 place: places.of(*body),
@@ -108,7 +109,7 @@ impl<T: Number> Element<T> {
     pub(crate) fn is_conservative(&self) -> bool {
         match self {
             Self::Along { law, .. } => law.is_conservative(),
-            Self::Between(between) => between.is_conservative(),
+            Self::Between(_, part) => *part == Part::Springs,
             Self::Ball { .. } | Self::Load { .. } => false,
         }
     }
@@ -133,7 +134,7 @@ impl<T: Number> Element<T> {
                     sink(place, motion, wrench.times(force));
                 }
             }
-            Self::Between(between) => between.exert(scene, at, sink),
+            Self::Between(bushing, part) => bushing.exert(*part, scene, at, sink),
             Self::Ball { joint, damping } => {
                 let joint = &scene.joints[*joint];
                 let [i, j] = scene.motions(at, joint);

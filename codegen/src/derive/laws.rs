@@ -1,5 +1,6 @@
 //! Strengths of forces that are formulas, see [`gyro_model::Formula`].
 
+use crate::derive::between::Between;
 use crate::derive::joint_coordinate;
 use crate::derive::points::{self, PointOfBody};
 use crate::derive::system::System;
@@ -96,6 +97,10 @@ fn of_output(system: &mut System, output: usize, number: usize) -> ExprId {
                 system.graph.sqrt(square)
             }
             _ => unreachable!("the output is one of a link"),
+        },
+        OutputKind::Bushing { force } => match &system.model.forces[*force].kind {
+            ForceKind::Bushing(bushing) => Between::new(system, bushing).places[number],
+            _ => unreachable!("the output is one of a bushing"),
         },
         _ => unreachable!("the reader refuses outputs that follow from forces"),
     }

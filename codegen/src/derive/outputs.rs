@@ -1,5 +1,6 @@
 //! The outputs that the model file asks for, in terms of the state, of [`Symbol::Acceleration`] and of the multipliers.
 
+use crate::derive::bushings;
 use crate::derive::dynamics::Dynamics;
 use crate::derive::forces;
 use crate::derive::joint_coordinate::Load;
@@ -70,6 +71,7 @@ fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<Exp
             vec![rows.fold(Graph::ZERO, |sum, row| system.graph.sub(sum, sources.lambda[row]))]
         }
         OutputKind::Spring { force } | OutputKind::Link { force } => forces::elastic(system, *force).to_vec(),
+        OutputKind::Bushing { force } => bushings::told(system, *force),
         OutputKind::Formula(formula) => vec![formula_value(system, sources, formula)],
         OutputKind::Energy => vec![sources.dynamics.kinetic, sources.dynamics.potential],
         OutputKind::Power => vec![sources.dynamics.power, drivers_power(system, sources)],

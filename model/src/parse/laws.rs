@@ -77,6 +77,7 @@ fn refused(kinds: &[OutputKind], name: &str, seen: Seen) -> Option<[String; 3]> 
         OutputKind::Pose(_) | OutputKind::Velocity(_) => true,
         OutputKind::Inertial(_) => number >= 3,
         OutputKind::Link { .. } => number == 1,
+        OutputKind::Bushing { .. } => number < 6,
         _ => false,
     };
     (!is_early).then(|| {

@@ -14,6 +14,7 @@
 #![deny(missing_docs)]
 
 mod bodies;
+mod bushings;
 mod closing;
 mod dice;
 mod elements;
@@ -62,6 +63,7 @@ fn text(mut page: Page, seed: u64) -> String {
     }
     page.elastic_outputs();
     page.laws(seed);
+    page.bushings(seed);
     page.read();
     page.text()
 }

@@ -11,7 +11,7 @@ use super::linear::Vector;
 use super::load::Load;
 use super::pose::Pose;
 use crate::field::Field;
-use gyro_model::{BodyFrame, Bushing};
+use gyro_model::{BodyFrame, Bushing, ForceKind};
 use std::array::from_fn;
 
 /// Six numbers along the readings.
@@ -32,6 +32,15 @@ impl<F: Field> Evaluation<'_, F> {
             forces.push(frame.body, &load);
         }
         Some(())
+    }
+
+    /// The readings, and the force along each.
+    pub(super) fn told_of_bushing(&self, force: usize) -> Option<Vec<F>> {
+        let ForceKind::Bushing(bushing) = &self.textbook.model.forces[force].kind else { return None };
+        let [places, rates] = self.seen_between(bushing)?;
+        let along = self.along_readings(bushing, &places, &rates)?;
+        let together = along.iter().map(|((pull, _), working)| pull + working);
+        Some(places.iter().cloned().chain(together).map(|number| number.value).collect())
     }
 
     /// Of each reading the pull of its spring with the reading, and what else acts along it.
@@ -104,14 +113,13 @@ impl<F: Field> Evaluation<'_, F> {
         };
         let ([x_of_x, ..], [x_of_y, ..], [x_of_z, y_of_z, z_of_z]) = (seen(0)?.0, seen(1)?.0, seen(2)?.0);
         let cosine = self.scope.sqrt(&(&y_of_z * &y_of_z + &z_of_z * &z_of_z))?;
-        Some([
-            x,
-            y,
-            z,
-            self.scope.atan2(&-y_of_z, &z_of_z)?,
-            self.scope.atan2(&x_of_z, &cosine)?,
-            self.scope.atan2(&-x_of_y, &x_of_x)?,
-        ])
+        // tan(a/2) = sin a / (1 + cos a), where a itself is zero or half a turn alike if its sine is.
+        let twice = |sine: Jet<F>, with: &Jet<F>| {
+            let half = self.scope.atan2(&(sine * (&cosine + with).reciprocal()?), &self.scope.one)?;
+            Some(&half + &half)
+        };
+        let about_y = self.scope.atan2(&x_of_z, &cosine)?;
+        Some([x, y, z, twice(-y_of_z, &z_of_z)?, about_y, twice(-x_of_y, &x_of_x)?])
     }
 }
 

@@ -135,6 +135,11 @@ impl<F: Field> Evaluation<'_, F> {
                 let line = to - from;
                 self.scope.sqrt(&line.dot(&line)).map(|length| length.value)
             }
+            OutputKind::Bushing { force } => {
+                let ForceKind::Bushing(bushing) = &model.forces[*force].kind else { return None };
+                let [places, _] = self.seen_between(bushing)?;
+                places.get(number).map(|place| place.value.clone())
+            }
             kind @ (OutputKind::Pose(_) | OutputKind::Velocity(_)) => {
                 self.output(kind, &[], &[])?.get(number).cloned()
             }
@@ -147,14 +152,23 @@ impl Evaluation<'_, f64> {
     /// Whether all formulas of forces and outputs have finite values and derivatives here.
     pub fn has_smooth_formulas(&self) -> bool {
         let model = self.textbook.model;
-        let numbers = model.forces.iter().flat_map(|force| force.kind.parts().numbers);
-        let of_forces = numbers.flat_map(|(_, numbers)| numbers).filter_map(Number::formula);
-        let of_outputs = model.outputs.iter().filter_map(|output| output.kind.formula());
-        of_forces.chain(of_outputs).all(|formula| {
+        let of_forces = model.forces.iter().flat_map(|force| {
+            let own = match &force.kind {
+                ForceKind::Bushing(bushing) => self.seen_between(bushing),
+                _ => None,
+            };
+            let numbers = force.kind.parts().numbers.into_iter().flat_map(|(_, numbers)| numbers);
+            numbers.filter_map(Number::formula).map(move |formula| (formula, own.clone()))
+        });
+        let of_outputs = model.outputs.iter().filter_map(|output| Some((output.kind.formula()?, None)));
+        of_forces.chain(of_outputs).all(|(formula, own)| {
             let see = |by: Seen| {
                 let see = |seen| {
+                    let of_own = |which: usize, k: usize| Some(own.as_ref()?[which][k].value);
                     let known = match seen {
                         Seen::Output { output, number } => self.early(output, number),
+                        Seen::Between(k) => of_own(0, k),
+                        Seen::BetweenRate(k) => of_own(1, k),
                         seen => self.sight(seen).map(|jet| jet.value),
                     };
                     // Lengths, accelerations and multipliers are looked at where they come from.
