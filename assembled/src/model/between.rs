@@ -74,9 +74,9 @@ impl<T: Number> Readings<T> {
     }
 }
 
-/// The angle with this sine and cosine, by that of half of it.
+/// The angle with this sine and cosine, by the tangent of half of it: none at half a turn.
 fn twice_half<T: Number>(sine: T, cosine: T) -> T {
-    atan2(sine, T::one() + cosine) * number(2.0)
+    atan2(sine / (T::one() + cosine), T::one()) * number(2.0)
 }
 
 /// What the matrix takes to the vector: not a number where two hinges are in line.

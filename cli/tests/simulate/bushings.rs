@@ -226,7 +226,7 @@ fn turning(p: [f64; 4], w: Vector) -> [f64; 4] {
 type Frame = (Vector, [f64; 4]);
 
 const FRAMES: [Frame; 2] =
-    [([0.1, 0.2, -0.3], [1.0, 0.2, -0.1, 0.3]), ([-0.2, 0.05, 0.15], [1.0, -0.3, 0.25, 0.1])];
+    [([0.1, 0.2, -0.3], [1.0, 0.2, -0.1, 0.3]), ([-0.2, 0.05, 0.15], [1.0, 0.6, -0.4, 0.2])];
 
 /// Components of the line between the frames and the Cardan angles between them.
 fn readings(bodies: &[Body; 2]) -> [f64; 6] {
@@ -345,7 +345,7 @@ fn integrated(mut bodies: [Body; 2], t_end: f64) -> [Body; 2] {
         let length = dot(&body.p, &body.p).sqrt();
         body.p = body.p.map(|e| e / length);
     }
-    let n = 16_000;
+    let n = 3000;
     let h = t_end / f64::from(n);
     type Slope = [([f64; 7], [Vector; 2]); 2];
     let slope = |bodies: &[Body; 2]| -> Slope {
@@ -389,7 +389,7 @@ fn two_bodies_move_as_newton_and_euler_say() {
             let same = if dot(&found.p, &expected.p) < 0.0 { -1.0 } else { 1.0 };
             let flat =
                 |body: &Body, sign: f64| [&body.r[..], &body.p.map(|e| sign * e), &body.v, &body.w].concat();
-            all_near(&flat(found, same), &flat(expected, 1.0), 2e-9, &format!("{options:?}"));
+            all_near(&flat(found, same), &flat(expected, 1.0), 3e-9, &format!("{options:?}"));
         }
         assert!(run["energy_drift"].as_f64().unwrap().abs() < 1e-10, "{options:?}");
     }
@@ -440,11 +440,11 @@ fn formulas_cost_what_keys_do() {
     assert_eq!(torsion, rows("turn", "torque = [0, 0, \"-7*angle_z\"]", &["joint_accelerations"]).0);
 }
 
-/// At 90 degrees about y the other two angles are not defined.
+/// Half a turn is on the border of an angle, where it has no value.
 #[test]
-fn a_run_ends_where_the_angles_do() {
+fn a_run_ends_where_an_angle_does() {
     let folder = Folder::new("bushing-pole");
-    let page = page("orientation = [1, 0, 1, 0]", "torsion = [1, 1, 1]");
+    let page = page("orientation = [0, 0, 1, 0]", "torsion = [1, 1, 1]");
     fs::write(folder.0.join("page.toml"), page).unwrap();
     for options in RUNS {
         let output = simulate(&folder, &[&["page.toml", "--t-end", "0.8"], options].concat());

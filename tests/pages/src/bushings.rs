@@ -77,12 +77,12 @@ fn strengths(dice: &mut Dice) -> String {
 }
 
 fn strength(dice: &mut Dice, key: &str) -> String {
-    let is_formula = !matches!(key, "stiffness" | "torsion") && dice.once_in(3);
+    let is_formula = !matches!(key, "stiffness" | "torsion") && dice.once_in(4);
     match key {
         _ if dice.once_in(3) => "0".to_owned(),
         _ if is_formula => {
             let names = READINGS.iter().map(|name| (*name).to_owned()).chain(["t".to_owned()]).collect();
-            let formula = Words { dice, names }.formula(2);
+            let formula = Words { dice, names }.formula(1);
             let is_damping = key.ends_with("damping");
             format!("{:?}", if is_damping { format!("0.1 + ({formula})^2") } else { formula })
         }

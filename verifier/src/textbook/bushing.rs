@@ -11,7 +11,7 @@ use super::linear::Vector;
 use super::load::Load;
 use super::pose::Pose;
 use crate::field::Field;
-use gyro_model::{BodyFrame, Bushing, ForceKind};
+use gyro_model::{BodyFrame, Bushing, ForceKind, Output, OutputKind};
 use std::array::from_fn;
 
 /// Six numbers along the readings.
@@ -102,7 +102,21 @@ impl<F: Field> Evaluation<'_, F> {
             .map(|(frame, pose): (&BodyFrame, _)| pose.point(&self.scope.vector(&frame.point)));
         let toward_first = poses[0].a.transposed();
         let [x, y, z] = self.by_axes(first, &toward_first.apply(&(to - from)))?.0;
-        // The second frame's axes, by those of the first.
+        let [x_of_x, x_of_y, x_of_z, y_of_z, z_of_z] = self.turned(bushing, poses)?;
+        let cosine = self.scope.sqrt(&(&y_of_z * &y_of_z + &z_of_z * &z_of_z))?;
+        // tan(a/2) = sin a / (1 + cos a), but at half a turn.
+        let twice = |sine: Jet<F>, with: &Jet<F>| {
+            let half = self.scope.atan2(&(sine * (&cosine + with).reciprocal()?), &self.scope.one)?;
+            Some(&half + &half)
+        };
+        let about_y = self.scope.atan2(&x_of_z, &cosine)?;
+        Some([x, y, z, twice(-y_of_z, &z_of_z)?, about_y, twice(-x_of_y, &x_of_x)?])
+    }
+
+    /// Entries of the matrix of the second frame's axes, by those of the first: xx, xy, xz, yz, zz.
+    fn turned(&self, bushing: &Bushing, poses: &[Pose<F>; 2]) -> Option<[Jet<F>; 5]> {
+        let [first, second] = bushing.ends();
+        let toward_first = poses[0].a.transposed();
         let axes = match &second.orientation {
             Some(own) => poses[1].a.product(&self.scope.rotation(&self.scope.unit(own)?)),
             None => poses[1].a.clone(),
@@ -112,16 +126,33 @@ impl<F: Field> Evaluation<'_, F> {
             self.by_axes(first, &toward_first.apply(&axis))
         };
         let ([x_of_x, ..], [x_of_y, ..], [x_of_z, y_of_z, z_of_z]) = (seen(0)?.0, seen(1)?.0, seen(2)?.0);
-        let cosine = self.scope.sqrt(&(&y_of_z * &y_of_z + &z_of_z * &z_of_z))?;
-        // tan(a/2) = sin a / (1 + cos a), where a itself is zero or half a turn alike if its sine is.
-        let twice = |sine: Jet<F>, with: &Jet<F>| {
-            let half = self.scope.atan2(&(sine * (&cosine + with).reciprocal()?), &self.scope.one)?;
-            Some(&half + &half)
-        };
-        let about_y = self.scope.atan2(&x_of_z, &cosine)?;
-        Some([x, y, z, twice(-y_of_z, &z_of_z)?, about_y, twice(-x_of_y, &x_of_x)?])
+        Some([x_of_x, x_of_y, x_of_z, y_of_z, z_of_z])
     }
 }
 
 /// The pull of a spring with its reading, and what else acts.
 type Along<F> = ((Jet<F>, Jet<F>), Jet<F>);
+
+/// A divisor that is smaller may be zero but for rounding.
+const NEAR: f64 = 1e-9;
+
+impl Evaluation<'_, f64> {
+    /// Whether formulas or outputs may see the readings of a force.
+    pub(super) fn is_seen(&self, index: usize) -> bool {
+        let model = self.textbook.model;
+        let is_it = |output: &Output| matches!(output.kind, OutputKind::Bushing { force } if force == index);
+        let numbers = model.forces[index].kind.parts().numbers;
+        let has_formula = numbers.iter().any(|(_, of)| of.iter().any(|number| number.formula().is_some()));
+        has_formula || model.outputs.iter().any(is_it)
+    }
+
+    /// Whether the Cardan angles are defined, and not for rounding alone.
+    pub(super) fn is_clear(&self, bushing: &Bushing) -> bool {
+        let poses = bushing.ends().map(|frame| self.moving[frame.body].pose.clone());
+        self.turned(bushing, &poses).is_some_and(|turned| {
+            let [x_of_x, _, _, y_of_z, z_of_z] = turned.map(|entry| entry.value);
+            let cosine = y_of_z.hypot(z_of_z);
+            cosine.min(cosine + z_of_z).min(cosine + x_of_x) > NEAR
+        })
+    }
+}

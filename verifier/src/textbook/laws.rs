@@ -149,9 +149,17 @@ impl<F: Field> Evaluation<'_, F> {
 }
 
 impl Evaluation<'_, f64> {
-    /// Whether all formulas of forces and outputs have finite values and derivatives here.
+    /// Whether all formulas of forces and outputs have finite values and derivatives here, and bushings readings that
+    /// formulas and outputs see.
     pub fn has_smooth_formulas(&self) -> bool {
         let model = self.textbook.model;
+        let are_clear = model.forces.iter().enumerate().all(|(index, force)| match &force.kind {
+            ForceKind::Bushing(bushing) => !self.is_seen(index) || self.is_clear(bushing),
+            _ => true,
+        });
+        if !are_clear {
+            return false;
+        }
         let of_forces = model.forces.iter().flat_map(|force| {
             let own = match &force.kind {
                 ForceKind::Bushing(bushing) => self.seen_between(bushing),
