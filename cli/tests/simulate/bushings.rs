@@ -339,6 +339,9 @@ fn acceleration(bodies: &[Body; 2]) -> [[Vector; 2]; 2] {
     })
 }
 
+/// Of each body the rates of position and Euler parameters, and of its velocities.
+type Slope = [([f64; 7], [Vector; 2]); 2];
+
 /// By Kutta's method.
 fn integrated(mut bodies: [Body; 2], t_end: f64) -> [Body; 2] {
     for body in &mut bodies {
@@ -347,7 +350,6 @@ fn integrated(mut bodies: [Body; 2], t_end: f64) -> [Body; 2] {
     }
     let n = 3000;
     let h = t_end / f64::from(n);
-    type Slope = [([f64; 7], [Vector; 2]); 2];
     let slope = |bodies: &[Body; 2]| -> Slope {
         let accelerations = acceleration(bodies);
         from_fn(|end| {
