@@ -20,8 +20,8 @@ pub struct BodyFrame {
 /// R_y(angle_y) R_z(angle_z)`: `angle_y` is between −π/2 and π/2, where the others are not defined, and these are
 /// between −π and π.
 ///
-/// Each reading u has the force or torque `−stiffness u − damping u̇ + load`, and together they have the power Σ f u̇ on
-/// the two bodies. So the force acts on the second body at the origin of the second frame, and its opposite on the
+/// Each reading u has the force or torque `−stiffness u − damping u̇ + load`, and together they have the power Σ f u̇
+/// on the two bodies. So the force acts on the second body at the origin of the second frame, and its opposite on the
 /// first *at the same point of space*. The springs are conservative.
 #[derive(Clone, Debug)]
 pub struct Bushing {

@@ -12,8 +12,8 @@ pub struct Between {
     /// Components and Cardan angles.
     pub places: [ExprId; 6],
     pub rates: [ExprId; 6],
-    /// Of each angle the vector whose product with the relative angular velocity is the angle's rate, by the axes of the
-    /// first frame.
+    /// Of each angle the vector whose product with the relative angular velocity is the angle's rate, by the axes of
+    /// the first frame.
     torques: [Vec3; 3],
     /// From the first body's mass centre to the second frame's origin, in the first body's frame.
     arm: Vec3,

@@ -1,7 +1,7 @@
 //! What acts between two frames: see [`gyro_model::Bushing`].
 //!
-//! Its six readings are typed as functions of the poses of both bodies. Rates and loads are their derivatives, along the
-//! motion and along each unit velocity: along each, the loads have the power of the forces along the readings.
+//! Its six readings are typed as functions of the poses of both bodies. Rates and loads are their derivatives, along
+//! the motion and along each unit velocity: along each, the loads have the power of the forces along the readings.
 
 use super::Evaluation;
 use super::forces::Forces;
@@ -66,8 +66,8 @@ impl<F: Field> Evaluation<'_, F> {
         Some([readings.map(|reading| reading.frozen()), rates])
     }
 
-    /// What forces along the readings do to one of the bodies: along each of its unit velocities, s and then w', the sum
-    /// of the forces, each times the rate of its reading.
+    /// What forces along the readings do to one of the bodies: along each of its unit velocities, s and then w', the
+    /// sum of the forces, each times the rate of its reading.
     fn load_of_bushing(&self, bushing: &Bushing, end: usize, along: &[Jet<F>]) -> Option<Load<F>> {
         let ends = bushing.ends().map(|frame| self.moving[frame.body].pose.clone());
         let none = self.scope.no_vector();
