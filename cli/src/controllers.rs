@@ -41,8 +41,11 @@ pub(crate) fn seen(model: &Model, seen: gyro_model::Seen) -> Seen {
         gyro_model::Seen::Coordinate(on) => Seen::Coordinate(on.joint, on.coordinate),
         gyro_model::Seen::Rate(on) => Seen::Rate(on.joint, on.coordinate),
         gyro_model::Seen::Time => Seen::Time,
-        gyro_model::Seen::Length | gyro_model::Seen::LengthRate => {
-            unreachable!("lengths are known in laws of links only")
+        gyro_model::Seen::Length
+        | gyro_model::Seen::LengthRate
+        | gyro_model::Seen::Between(_)
+        | gyro_model::Seen::BetweenRate(_) => {
+            unreachable!("what is between the ends of a force is known in its own law only")
         }
     }
 }

@@ -299,6 +299,7 @@ fn facts(system: &System) -> Facts {
         | OutputKind::Velocity(_)
         | OutputKind::Spring { .. }
         | OutputKind::Link { .. }
+        | OutputKind::Bushing { .. }
         // What a formula sees is an output of its own.
         | OutputKind::Formula(_)
         | OutputKind::State { .. }

@@ -80,4 +80,8 @@ pub enum Seen {
     Length,
     /// In the law of a link: the rate of that distance, m/s.
     LengthRate,
+    /// In the law of a bushing: one of its [`crate::Bushing::READINGS`], m or rad.
+    Between(usize),
+    /// In the law of a bushing: the rate of one of these, m/s or rad/s.
+    BetweenRate(usize),
 }

@@ -8,7 +8,7 @@
 use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 
-use crate::{Model, Motion, Number, Rational, to_f64};
+use crate::{Bushing, ForceKind, Model, Motion, Number, Rational, to_f64};
 
 /// Decimal digits of a direction's largest component that count: twice what an `f64` has.
 const DIGITS: i32 = 32;
@@ -35,6 +35,12 @@ pub(crate) fn settle(model: &mut Model) {
         round(&mut body.orientation);
         let rotations = body.motion.iter_mut().flat_map(|motion| &mut motion.rotations);
         rotations.for_each(|(axis, _)| round(axis));
+    }
+    for force in &mut model.forces {
+        if let ForceKind::Bushing(bushing) = &mut force.kind {
+            let Bushing { first, second, .. } = &mut **bushing;
+            [first, second].into_iter().filter_map(|frame| frame.orientation.as_mut()).for_each(|p| round(p));
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::slice::from_ref;
 
-use crate::{CoordinateUse, Formula, JointCoordinate, Motion, Number, Seen};
+use crate::{BodyFrame, Bushing, CoordinateUse, Formula, JointCoordinate, Motion, Number, Seen};
 
 /// A joint coordinate that follows others: one row, the coordinate less what it is to be.
 #[derive(Clone, Debug)]
@@ -148,6 +148,8 @@ pub enum ForceKind {
         /// What it pulls besides, N; a formula of it may name the distance and its rate.
         tension: Number,
     },
+    /// Between two frames of two bodies.
+    Bushing(Box<Bushing>),
     /// A force at a point of a body and a torque on it. Counted as non-conservative.
     Load {
         /// Index of the body.
@@ -180,7 +182,7 @@ pub struct ForceParts<'f> {
     pub word: &'static str,
     /// The coordinate along which it acts, and what it asks of it; `None` of what acts on points of bodies.
     pub on: Option<(JointCoordinate, CoordinateUse)>,
-    /// Its numbers by their keys; of an end of a link those of its point.
+    /// Its numbers by their keys; of an end of a link those of its point, of an end of a bushing those of its frame.
     pub numbers: Vec<(&'static str, &'f [Number])>,
 }
 
@@ -215,6 +217,9 @@ impl ForceKind {
                     ("tension", from_ref(tension)),
                 ],
             },
+            Self::Bushing(bushing) => {
+                ForceParts { word: "bushing", on: None, numbers: numbers_of_bushing(bushing) }
+            }
             Self::Load { body: _, point, force, torque, frame: _ } => ForceParts {
                 word: "load",
                 on: None,
@@ -234,6 +239,10 @@ impl ForceKind {
         match self {
             Self::Spring { .. } | Self::Potential { .. } => false,
             Self::Link { damping, tension, .. } => !damping.is_zero() || !tension.is_zero(),
+            Self::Bushing(bushing) => {
+                let strengths = bushing.strengths();
+                strengths.iter().any(|[_, damping, load]| !damping.is_zero() || !load.is_zero())
+            }
             _ => true,
         }
     }
@@ -254,14 +263,44 @@ impl ForceKind {
         Some((formula, along.collect()))
     }
 
+    /// The kind's word and the two bodies, of what acts between points or frames of two bodies.
+    pub(crate) fn between(&self) -> Option<(&'static str, [usize; 2])> {
+        match self {
+            Self::Link { first, second, .. } => Some(("link", [first.0, second.0])),
+            Self::Bushing(bushing) => Some(("bushing", bushing.ends().map(|frame| frame.body))),
+            _ => None,
+        }
+    }
+
     /// The points of bodies at which it acts, each with the index of its body.
     pub(crate) fn points_mut(&mut self) -> Vec<(usize, &mut [Number; 3])> {
         match self {
             Self::Link { first, second, .. } => vec![(first.0, &mut first.1), (second.0, &mut second.1)],
+            Self::Bushing(bushing) => {
+                let Bushing { first, second, .. } = &mut **bushing;
+                [first, second].map(|frame| (frame.body, &mut frame.point)).into()
+            }
             Self::Load { body, point, .. } => vec![(*body, point)],
             _ => Vec::new(),
         }
     }
+}
+
+fn numbers_of_bushing(bushing: &Bushing) -> Vec<(&'static str, &[Number])> {
+    let Bushing { first, second, along, about } = bushing;
+    let mut numbers = vec![
+        ("first", &first.point[..]),
+        ("second", &second.point),
+        ("stiffness", &along.stiffness),
+        ("damping", &along.damping),
+        ("force", &along.load),
+        ("torsion", &about.stiffness),
+        ("torsional_damping", &about.damping),
+        ("torque", &about.load),
+    ];
+    let orientations = [("first", first), ("second", second)].into_iter();
+    numbers.extend(orientations.filter_map(|(key, frame)| Some((key, &frame.orientation.as_ref()?[..]))));
+    numbers
 }
 
 impl<'f> ForceParts<'f> {
@@ -300,17 +339,6 @@ pub struct Output {
     pub name: String,
     /// What it is.
     pub kind: OutputKind,
-}
-
-/// A frame that is fixed in a body.
-#[derive(Clone, Debug)]
-pub struct BodyFrame {
-    /// Index of the body.
-    pub body: usize,
-    /// Its origin in the body's frame, m.
-    pub point: [Number; 3],
-    /// How it is turned in the body's frame: Euler parameters of any length; `None` where it has the body's axes.
-    pub orientation: Option<[Number; 4]>,
 }
 
 /// The kinds of output.
@@ -352,6 +380,11 @@ pub enum OutputKind {
     /// Force with which a link pushes its ends apart, its spring's and its damper's (N), and its length (m).
     Link {
         /// Index into [`crate::Model::forces`], of a link.
+        force: usize,
+    },
+    /// Readings of a bushing (m and rad), and force or torque along each (N and N·m).
+    Bushing {
+        /// Index into [`crate::Model::forces`], of a bushing.
         force: usize,
     },
     /// The value of a formula.
@@ -434,6 +467,20 @@ impl OutputKind {
             Self::Driver { .. } | Self::Coupler { .. } => &[("", "N*m or N")],
             Self::Spring { .. } => &[("force", "N*m or N"), ("deflection", "rad or m")],
             Self::Link { .. } => &[("force", "N"), ("length", "m")],
+            Self::Bushing { .. } => &[
+                ("x", "m"),
+                ("y", "m"),
+                ("z", "m"),
+                ("angle_x", "rad"),
+                ("angle_y", "rad"),
+                ("angle_z", "rad"),
+                ("force_x", "N"),
+                ("force_y", "N"),
+                ("force_z", "N"),
+                ("torque_x", "N*m"),
+                ("torque_y", "N*m"),
+                ("torque_z", "N*m"),
+            ],
             Self::Formula(_) | Self::State { .. } => &[("", "1")],
             Self::Energy => &[("kinetic", "J"), ("potential", "J")],
             Self::Power => &[("non_conservative", "W"), ("drivers", "W")],

@@ -17,6 +17,7 @@ mod diagnostics;
 mod directions;
 mod elements;
 mod event;
+mod frames;
 mod joint_kind;
 pub mod keys;
 mod kinematics;
@@ -43,10 +44,10 @@ pub use coordinate::{CoordinateKind, CoordinateUse, JointCoordinate, Seen};
 pub use curve::{Beyond, Curve, Joined};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
-    BodyFrame, Coupler, Coupling, Driver, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind,
-    StopSide,
+    Coupler, Coupling, Driver, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind, StopSide,
 };
 pub use event::{Direction, Event};
+pub use frames::{BodyFrame, Bushing, BushingLaw};
 pub use joint_kind::JointKind;
 pub use kinematics::Kinematics;
 pub use lines::Lines;

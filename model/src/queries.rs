@@ -2,9 +2,9 @@
 
 use crate::redundancy::analyse_with_start;
 use crate::{
-    BodyMotion, CoordinateKind, CoordinateUse, Coupler, Coupling, Formula, JointCoordinate, JointKind, Lines,
-    Model, Motion, Number, Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner, RowUnit, Start,
-    Support, Tree, to_f64,
+    BodyFrame, BodyMotion, CoordinateKind, CoordinateUse, Coupler, Coupling, ForceKind, Formula,
+    JointCoordinate, JointKind, Lines, Model, Motion, Number, Parameter, PointAxes, Rational, RedundantRow,
+    Row, RowOwner, RowUnit, Start, Support, Tree, to_f64,
 };
 use std::ops::Range;
 
@@ -247,6 +247,15 @@ impl Model {
     /// unless the model file asks to leave it out (`count_work = false`).
     pub fn has_work(&self) -> bool {
         self.counts_work && self.is_worked_on()
+    }
+
+    /// The frames between which bushings act.
+    pub fn frames_of_forces(&self) -> impl Iterator<Item = &BodyFrame> {
+        let bushings = self.forces.iter().filter_map(|force| match &force.kind {
+            ForceKind::Bushing(bushing) => Some(bushing.ends()),
+            _ => None,
+        });
+        bushings.flatten()
     }
 
     /// Whether something does work that the energy does not account for, counted or not.

@@ -1,5 +1,6 @@
 //! Strengths of forces: constants, inputs, and formulas of what moves.
 
+use crate::model::between::Frames;
 use crate::model::curves::Curves;
 use crate::model::joint::Joint;
 use crate::model::measure::Coordinate;
@@ -49,24 +50,32 @@ pub(crate) enum Leaf<T> {
     LengthRate,
     /// An element of the state: one of the model file's own.
     State(usize),
+    /// A reading of the bushing whose strength it is.
+    Between(usize),
+    /// The rate of one.
+    BetweenRate(usize),
+    /// A reading of a bushing.
+    Seen(Box<Frames<T>>, usize),
     /// A number among those of all outputs.
     Output(usize),
 }
 
-/// When a strength is asked for, and in a link at which distance of its ends and rate of that.
+/// When a strength is asked for, in a link at which distance of its ends and rate of that, and in a bushing at which
+/// readings and rates of these.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Now<'a, T: Number> {
     pub(crate) scene: &'a Scene<T>,
     pub(crate) at: Moment<'a, T>,
     pub(crate) line: [T; 2],
+    pub(crate) frames: Option<&'a [[T; 6]; 2]>,
     /// What is known of the numbers of outputs.
     pub(crate) outputs: &'a [T],
 }
 
 impl<'a, T: Number> Now<'a, T> {
-    /// Where no link is meant, and outputs are not known.
+    /// Where no link and no bushing is meant, and outputs are not known.
     pub(crate) fn new(scene: &'a Scene<T>, at: Moment<'a, T>) -> Self {
-        Self { scene, at, line: [T::zero(); 2], outputs: &[] }
+        Self { scene, at, line: [T::zero(); 2], frames: None, outputs: &[] }
     }
 }
 
@@ -133,6 +142,8 @@ impl<T: Number> Leaf<T> {
             Seen::Time => Self::Time,
             Seen::Length => Self::Length,
             Seen::LengthRate => Self::LengthRate,
+            Seen::Between(k) => Self::Between(k),
+            Seen::BetweenRate(k) => Self::BetweenRate(k),
             Seen::Coordinate(on) => {
                 Self::Coordinate(Path::Coordinate(Coordinate::of(&joints[on.joint], on.coordinate)))
             }
@@ -152,6 +163,12 @@ impl<T: Number> Leaf<T> {
                     _ => unreachable!("the output is one of a link"),
                 },
                 OutputKind::State { state } => Self::State(first_state(model) + state),
+                OutputKind::Bushing { force } if number < 6 => match &model.forces[*force].kind {
+                    ForceKind::Bushing(bushing) => {
+                        Self::Seen(Box::new(Frames::new(model, places, bushing)), number)
+                    }
+                    _ => unreachable!("the output is one of a bushing"),
+                },
                 _ => {
                     let before = model.outputs[..output].iter().map(|output| output.kind.columns().len());
                     Self::Output(before.sum::<usize>() + number)
@@ -175,6 +192,9 @@ impl<T: Number> Leaf<T> {
             Self::State(place) => at.y[*place],
             Self::Length => now.line[0],
             Self::LengthRate => now.line[1],
+            Self::Between(k) => now.frames.map_or(T::zero(), |[places, _]| places[*k]),
+            Self::BetweenRate(k) => now.frames.map_or(T::zero(), |[_, rates]| rates[*k]),
+            Self::Seen(frames, k) => frames.readings(scene, at).seen[0][*k],
             Self::Output(place) => now.outputs.get(*place).copied().unwrap_or_else(T::zero),
         }
     }

@@ -1,6 +1,7 @@
 //! Energy, and the power of what the energy does not account for.
 
 use crate::model::amount::Now;
+use crate::model::bushing::Part;
 use crate::model::forces::Element;
 use crate::model::lowered::Lowered;
 use crate::model::place::{Moment, Place};
@@ -31,9 +32,15 @@ impl<T: Number> Lowered<T> {
             energy.potential -= body.mass * self.scene.gravity.dot(&r);
         }
         for element in &self.elements {
-            if let Element::Along { path, law } = element {
-                let now = Now::new(&self.scene, at);
-                energy.potential += law.potential(&now, || path.value(&self.scene, at));
+            match element {
+                Element::Along { path, law } => {
+                    let now = Now::new(&self.scene, at);
+                    energy.potential += law.potential(&now, || path.value(&self.scene, at));
+                }
+                Element::Between(bushing, Part::Springs) => {
+                    energy.potential += bushing.potential(&self.scene, at);
+                }
+                Element::Between(_, Part::Rest) | Element::Ball { .. } | Element::Load { .. } => {}
             }
         }
         for rotor in &self.rotors {

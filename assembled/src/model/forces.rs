@@ -1,6 +1,7 @@
 //! Applied forces, paper, eqs. (21) and (22): gravity, damping in the joints, and the forces of the model file.
 
 use crate::model::amount::{Amount, Now};
+use crate::model::bushing::{Bushing, Part};
 use crate::model::joint::Joint;
 use crate::model::law::Law;
 use crate::model::measure::Coordinate;
@@ -17,6 +18,8 @@ use nalgebra::Vector3;
 pub(crate) enum Element<T> {
     /// A force along a coordinate, between two bodies.
     Along { path: Path<T>, law: Law<T> },
+    /// What acts between two frames.
+    Between(Box<Bushing<T>>, Part),
     /// Viscous damping of a spherical joint: minus this times the relative angular velocity.
     Ball { joint: usize, damping: T },
     /// Force and torque on one body.
@@ -66,6 +69,11 @@ impl<T: Number> Element<T> {
                 let wanted = wanted.into_iter().filter(|(strength, _)| !strength.is_zero());
                 wanted.map(|(_, law)| Self::Along { path, law }).collect()
             }
+            ForceKind::Bushing(bushing) => {
+                let bushing = Bushing::new(model, (places, joints), bushing);
+                let parts = bushing.parts().into_iter();
+                parts.map(|part| Self::Between(Box::new(bushing.clone()), part)).collect()
+            }
             ForceKind::Load { body, point, force, torque, frame } => vec![Self::Load {
                 place: places.of(*body),
                 point: vector(model.values(point)),
@@ -99,7 +107,11 @@ impl<T: Number> Element<T> {
 
     /// Whether the energy counts what the element does.
     pub(crate) fn is_conservative(&self) -> bool {
-        matches!(self, Self::Along { law, .. } if law.is_conservative())
+        match self {
+            Self::Along { law, .. } => law.is_conservative(),
+            Self::Between(_, part) => *part == Part::Springs,
+            Self::Ball { .. } | Self::Load { .. } => false,
+        }
     }
 
     /// Calls the sink with what the element exerts on each of its bodies, and that body's motion.
@@ -122,6 +134,7 @@ impl<T: Number> Element<T> {
                     sink(place, motion, wrench.times(force));
                 }
             }
+            Self::Between(bushing, part) => bushing.exert(*part, scene, at, sink),
             Self::Ball { joint, damping } => {
                 let joint = &scene.joints[*joint];
                 let [i, j] = scene.motions(at, joint);

@@ -44,6 +44,7 @@ impl<T: Number> Law<T> {
             }
             ForceKind::Motor { on: _, value } => Self::Motor { value: amount(value) },
             ForceKind::Link { .. }
+            | ForceKind::Bushing(_)
             | ForceKind::Load { .. }
             | ForceKind::Potential { .. }
             | ForceKind::Dissipation { .. } => return None,

@@ -3,6 +3,8 @@
 pub(crate) mod amount;
 pub(crate) mod applied;
 pub(crate) mod armatures;
+pub(crate) mod between;
+pub(crate) mod bushing;
 pub(crate) mod constraints;
 pub(crate) mod course;
 pub(crate) mod curves;

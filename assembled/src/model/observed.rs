@@ -67,6 +67,7 @@ impl<T: Number> Lowered<T> {
                 out[0] = spring - value(&elastic.damping) * rate - value(&elastic.tension);
                 out[1] = if elastic.is_link { x } else { deflection };
             }
+            Quantity::Bushing(bushing) => out.copy_from_slice(bushing.told(&self.scene, at).as_flattened()),
             Quantity::Load(row) => out[0] = row.map_or(T::zero(), |row| -solution.lambda[row]),
             Quantity::State(place) => out[0] = at.y[*place],
             Quantity::Formula(_) => out[0] = T::zero(),

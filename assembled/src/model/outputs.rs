@@ -1,6 +1,7 @@
 //! What a model file asks for besides the motion: [`gyro_model::OutputKind`].
 
 use crate::model::amount::Amount;
+use crate::model::bushing::Bushing;
 use crate::model::joint::Joint;
 use crate::model::measure::Coordinate;
 use crate::model::path::Path;
@@ -32,6 +33,8 @@ pub(crate) enum Quantity<T> {
     Elastic(Elastic<T>),
     /// An element of the state.
     State(usize),
+    /// A bushing.
+    Bushing(Box<Bushing<T>>),
     /// A formula, which may see other outputs.
     Formula(Amount<T>),
     Energy,
@@ -115,6 +118,12 @@ impl<T: Number> Output<T> {
                 Quantity::Elastic(Elastic::new(model, (places, joints), &model.forces[*force].kind))
             }
             OutputKind::State { state } => Quantity::State(first_state(model) + state),
+            OutputKind::Bushing { force } => match &model.forces[*force].kind {
+                ForceKind::Bushing(bushing) => {
+                    Quantity::Bushing(Box::new(Bushing::new(model, (places, joints), bushing)))
+                }
+                _ => unreachable!("the reader refuses outputs of other forces"),
+            },
             OutputKind::Formula(formula) => {
                 let number = gyro_model::Number::Formula(formula.clone().into());
                 Quantity::Formula(Amount::new(model, (places, joints), &number))

@@ -43,8 +43,12 @@ impl<T: Number> Wrench<T> {
     }
 
     /// A force at a global point.
-    fn at(motion: &Motion<T>, point: &Vector3<T>, force: Vector3<T>) -> Self {
+    pub(crate) fn at(motion: &Motion<T>, point: &Vector3<T>, force: Vector3<T>) -> Self {
         Self { force, torque: motion.a.tr_mul(&(point - motion.r).cross(&force)) }
+    }
+
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        Self { force: self.force + other.force, torque: self.torque + other.torque }
     }
 
     pub(crate) fn times(&self, factor: T) -> Self {

@@ -4,7 +4,7 @@ use crate::model::motion::Motion;
 use crate::model::place::{Place, Places, vector};
 use crate::number::Number;
 use gyro_model::{BodyFrame, Model};
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 /// A frame of a body.
 #[derive(Clone, Debug)]
@@ -24,6 +24,11 @@ impl<T: Number> Spot<T> {
             point: vector(model.values(&frame.point)),
             turn: UnitQuaternion::from_quaternion(Quaternion::new(e0, e1, e2, e3)).cast(),
         }
+    }
+
+    /// Its axes, global.
+    pub(crate) fn axes(&self, motion: &Motion<T>) -> Matrix3<T> {
+        motion.a * self.turn.to_rotation_matrix().matrix()
     }
 
     /// A vector in the body's frame, by the axes of this one.

@@ -3,6 +3,7 @@
 use crate::support::{Folder, json, simulate};
 use serde_json::Value;
 use std::array::from_fn;
+use std::f64::consts::FRAC_PI_2;
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -334,4 +335,60 @@ fn the_quadrotor_rises() {
     let velocity = (force / resistance).sqrt() * (t * (force * resistance).sqrt() / mass).tanh();
     let run = example("quadrotor", "2");
     near([run["outputs"]["air"][2].as_f64().unwrap(), 0.0], [velocity, 0.0], 1e-7);
+}
+
+/// The bushing is a force between coupler and rocker: three angles, the coupler's being that of its body.
+#[test]
+fn the_four_bar_gives_way_in_its_bushing() {
+    let start = [[FRAC_PI_2, 0.0, FRAC_PI_2], [6.0, 0.0, 6.0]];
+    let [[crank, coupler, rocker], rates] = integrated(start, 0.2, |x, v, _| linkage(x, v));
+    let run = example("bushed_four_bar", "0.2");
+    let [input, elbow, output] = ["input", "elbow", "output"].map(|name| joint(&run, name));
+    near([input[0], output[0]], [crank, rocker], 1e-9);
+    near([elbow[0], input[1]], [coupler - crank, rates[0]], 1e-8);
+    let (u, _) = gap([crank, coupler, rocker], rates);
+    let pin = &run["outputs"]["pin"];
+    near([0, 1].map(|k| 1e4 * pin[k].as_f64().unwrap()), u.map(|u| 1e4 * u), 1e-6);
+}
+
+/// Where the rocker's end is, seen from the coupler's, and how fast that changes there.
+fn gap([crank, coupler, rocker]: [f64; 3], [a, b, c]: [f64; 3]) -> ([f64; 2], [f64; 2]) {
+    let arm = |length: f64, angle: f64| [length * angle.cos(), length * angle.sin()];
+    let turned = |[x, y]: [f64; 2], rate: f64| [-rate * y, rate * x];
+    let (first, second, third) = (arm(0.2, crank), arm(0.6, coupler), arm(0.2, rocker));
+    let d: [f64; 2] = from_fn(|k| [0.6, 0.0][k] + third[k] - first[k] - second[k]);
+    let (da, db, dc) = (turned(first, a), turned(second, b), turned(third, c));
+    let carried = turned(d, b);
+    let rate: [f64; 2] = from_fn(|k| dc[k] - da[k] - db[k] - carried[k]);
+    let seen =
+        |[x, y]: [f64; 2]| [x * coupler.cos() + y * coupler.sin(), y * coupler.cos() - x * coupler.sin()];
+    (seen(d), seen(rate))
+}
+
+/// Accelerations by Lagrange's equations, crank and coupler a double pendulum, the rocker one of its own.
+fn linkage(x: [f64; 3], v: [f64; 3]) -> [f64; 3] {
+    let [crank, coupler, rocker] = x;
+    let (u, rate) = gap(x, v);
+    let f: [f64; 2] = from_fn(|k| -8e4 * u[k] - 40.0 * rate[k] - 1e9 * u[k].powi(3));
+    // The power of these, and of the damper of the angle between the bodies, along each unit rate.
+    let mut load: [f64; 3] = from_fn(|k| {
+        let unit = from_fn(|l| if l == k { 1.0 } else { 0.0 });
+        let [x, y] = gap(x, unit).1;
+        x * f[0] + y * f[1]
+    });
+    let drag = 0.02 * (v[2] - v[1]);
+    load[1] += drag;
+    load[2] -= drag;
+    let (difference, coupling) = (crank - coupler, 0.2 * 0.3);
+    load[0] -= 9.81 * (0.5 * 0.1 + 0.2) * crank.cos() + coupling * difference.sin() * v[1] * v[1];
+    load[1] -= 9.81 * 0.3 * coupler.cos() - coupling * difference.sin() * v[0] * v[0];
+    load[2] -= 9.81 * 0.8 * 0.1 * rocker.cos();
+    let (m, n) = (2e-3 + 0.5 * 0.01 + 0.04, 0.03 + 0.09);
+    let across = coupling * difference.cos();
+    let determinant = m * n - across * across;
+    [
+        (n * load[0] - across * load[1]) / determinant,
+        (m * load[1] - across * load[0]) / determinant,
+        load[2] / (0.02 + 0.8 * 0.01),
+    ]
 }

@@ -3,7 +3,7 @@
 
 use crate::derive::frames::{JointFrames, dot1};
 use crate::derive::joint_coordinate;
-use crate::derive::laws::{self, OfBodies};
+use crate::derive::laws::{self, OfBodies, Own};
 use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::vector::Vec3;
@@ -60,7 +60,7 @@ fn coupled(system: &mut System, coupler: &Coupler) -> ExprId {
         Coupling::Formula(formula) => {
             let second = joint_coordinate::value(system, coupler.second);
             let wanted =
-                laws::value(system, formula, |system, seen| laws::see(system, &OfBodies, None, seen));
+                laws::value(system, formula, |system, seen| laws::see(system, &OfBodies, Own::Nothing, seen));
             return system.graph.sub(second, wanted);
         }
     };

@@ -1,7 +1,8 @@
 //! Forces besides gravity: what each does to the bodies, what energy it stores, what power it has.
 
+use crate::derive::bushings::Held;
 use crate::derive::joint_coordinate::{self, Load, relative_spin};
-use crate::derive::laws::{self, OfBodies, Readings};
+use crate::derive::laws::{self, Line, OfBodies, Own, Readings};
 use crate::derive::points::PointOfBody;
 use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
@@ -19,7 +20,7 @@ pub struct Forces {
     pub potential: ExprId,
     /// Power of the forces that store none.
     pub power: ExprId,
-    /// The part of it that links and loads have: those that act between points of bodies, not along a joint's
+    /// The part of it that links, bushings and loads have: those that act between points of bodies, not along a joint's
     /// coordinates.
     pub power_at_points: ExprId,
 }
@@ -92,6 +93,7 @@ fn along(system: &mut System, readings: &impl Readings, force: &Force) -> Option
             Some(Along { on: *on, force: laws::strength(system, readings, value), potential: None })
         }
         ForceKind::Link { .. }
+        | ForceKind::Bushing(_)
         | ForceKind::Load { .. }
         | ForceKind::Potential { .. }
         | ForceKind::Dissipation { .. } => None,
@@ -121,6 +123,7 @@ impl Forces {
         let power_of_damping = std::mem::replace(&mut forces.power, Graph::ZERO);
         for force in &system.model.forces {
             forces.add_link(system, &force.kind);
+            forces.add_bushing(system, &force.kind);
             forces.add_load(system, &force.kind);
         }
         forces.power_at_points = forces.power;
@@ -177,6 +180,17 @@ impl Forces {
         for (end, force) in ends.iter().zip([on_first, on_second]) {
             let load = load_at(system, end, &force);
             self.push(system, end.body, &load);
+        }
+    }
+
+    /// Between two frames.
+    fn add_bushing(&mut self, system: &mut System, kind: &ForceKind) {
+        let ForceKind::Bushing(bushing) = kind else { return };
+        let Held { loads, stored, power, .. } = Held::of(system, bushing);
+        self.potential = system.graph.add(self.potential, stored);
+        self.power = system.graph.add(self.power, power);
+        for (frame, load) in bushing.ends().into_iter().zip(&loads) {
+            self.push(system, frame.body, load);
         }
     }
 
@@ -248,8 +262,9 @@ impl Pull {
         let inverse = graph.recip(length);
         let unit = graph.scale_vec(inverse, &d);
         let rate = graph.dot(&unit, &d_dot);
-        let line = laws::Line { length, rate };
-        let [damping, tension] = [damping, tension].map(|number| line.strength(system, number));
+        let line = Line { length, rate };
+        let [damping, tension] =
+            [damping, tension].map(|number| laws::own_strength(system, Own::Line(&line), number));
         let graph = &mut system.graph;
         let (elastic, stored) = spring(graph, stiffness, length, free);
         let drag = graph.mul(damping, rate);

@@ -1,5 +1,6 @@
 //! Strengths of forces that are formulas, see [`gyro_model::Formula`].
 
+use crate::derive::between::Between;
 use crate::derive::joint_coordinate;
 use crate::derive::points::{self, PointOfBody};
 use crate::derive::system::System;
@@ -37,33 +38,44 @@ pub struct Line {
     pub rate: ExprId,
 }
 
-impl Line {
-    /// A strength of a link.
-    pub fn strength(&self, system: &mut System, number: &Number) -> ExprId {
-        read(system, &OfBodies, Some(self), number)
-    }
+/// What the laws of links and bushings see of their own ends.
+#[derive(Clone, Copy)]
+pub enum Own<'o> {
+    Nothing,
+    Line(&'o Line),
+    /// Six readings and their rates.
+    Frames([&'o [ExprId; 6]; 2]),
 }
 
 /// A strength.
 pub fn strength(system: &mut System, readings: &impl Readings, number: &Number) -> ExprId {
-    read(system, readings, None, number)
+    read(system, readings, Own::Nothing, number)
 }
 
-fn read(system: &mut System, readings: &impl Readings, line: Option<&Line>, number: &Number) -> ExprId {
+/// A strength of a link or of a bushing.
+pub fn own_strength(system: &mut System, own: Own<'_>, number: &Number) -> ExprId {
+    read(system, &OfBodies, own, number)
+}
+
+fn read(system: &mut System, readings: &impl Readings, own: Own<'_>, number: &Number) -> ExprId {
     let Number::Formula(formula) = number else { return system.number(number) };
-    value(system, formula, |system, seen| see(system, readings, line, seen))
+    value(system, formula, |system, seen| see(system, readings, own, seen))
 }
 
 /// A number of the mechanism, before accelerations are known.
-pub fn see(system: &mut System, readings: &impl Readings, line: Option<&Line>, seen: Seen) -> ExprId {
-    match (seen, line) {
+pub fn see(system: &mut System, readings: &impl Readings, own: Own<'_>, seen: Seen) -> ExprId {
+    match (seen, own) {
         (Seen::Coordinate(on), _) => readings.value(system, on),
         (Seen::Rate(on), _) => readings.rate(system, on),
         (Seen::Time, _) => system.graph.symbol(Symbol::Time),
         (Seen::Output { output, number }, _) => of_output(system, output, number),
-        (Seen::Length, Some(line)) => line.length,
-        (Seen::LengthRate, Some(line)) => line.rate,
-        (Seen::Length | Seen::LengthRate, None) => unreachable!("the reader knows lengths in links only"),
+        (Seen::Length, Own::Line(line)) => line.length,
+        (Seen::LengthRate, Own::Line(line)) => line.rate,
+        (Seen::Between(k), Own::Frames([places, _])) => places[k],
+        (Seen::BetweenRate(k), Own::Frames([_, rates])) => rates[k],
+        (Seen::Length | Seen::LengthRate | Seen::Between(_) | Seen::BetweenRate(_), _) => {
+            unreachable!("the reader knows what is between ends in their own laws only")
+        }
     }
 }
 
@@ -86,6 +98,10 @@ fn of_output(system: &mut System, output: usize, number: usize) -> ExprId {
                 system.graph.sqrt(square)
             }
             _ => unreachable!("the output is one of a link"),
+        },
+        OutputKind::Bushing { force } => match &system.model.forces[*force].kind {
+            ForceKind::Bushing(bushing) => Between::new(system, bushing).places[number],
+            _ => unreachable!("the output is one of a bushing"),
         },
         _ => unreachable!("the reader refuses outputs that follow from forces"),
     }
@@ -148,8 +164,8 @@ pub fn with_slope(
     let pair = formula.value(|operation, values: &[(ExprId, ExprId)]| {
         let value_of = |place: usize| values[place].0;
         let slope_of = |place: usize| values[place].1;
-        let value = one(system, operation, value_of, |system, seen| see(system, readings, None, seen));
-
+        let value =
+            one(system, operation, value_of, |system, seen| see(system, readings, Own::Nothing, seen));
         let called = if let Operation::Call(of, _) = operation { Some(called(system, *of)) } else { None };
         let graph = &mut system.graph;
         let slope = match operation {

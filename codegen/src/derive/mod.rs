@@ -1,6 +1,8 @@
 //! From the model to Φ and its derivatives, masses, forces and outputs: the textbook, symbol by symbol.
 
 pub mod armature;
+pub mod between;
+pub mod bushings;
 pub mod constraints;
 pub mod dynamics;
 pub mod forces;

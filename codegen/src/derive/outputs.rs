@@ -1,11 +1,12 @@
 //! The outputs that the model file asks for, in terms of the state, of [`Symbol::Acceleration`] and of the multipliers.
 
+use crate::derive::bushings;
 use crate::derive::dynamics::Dynamics;
 use crate::derive::forces;
 use crate::derive::in_time::in_time;
 use crate::derive::joint_coordinate::Load;
 use crate::derive::kinematics::Kinematics;
-use crate::derive::laws::{self, OfBodies};
+use crate::derive::laws::{self, OfBodies, Own};
 use crate::derive::points::{self, by_axes};
 use crate::derive::system::System;
 use crate::expr::differentiate::Derivative;
@@ -71,6 +72,7 @@ fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<Exp
         }
         OutputKind::Spring { force } | OutputKind::Link { force } => forces::elastic(system, *force).to_vec(),
         OutputKind::State { state } => vec![system.graph.symbol(Symbol::State(*state))],
+        OutputKind::Bushing { force } => bushings::told(system, *force),
         OutputKind::Formula(formula) => vec![formula_value(system, sources, formula)],
         OutputKind::Energy => vec![sources.dynamics.kinetic, sources.dynamics.potential],
         OutputKind::Power => vec![sources.dynamics.power, drivers_power(system, sources)],
@@ -84,7 +86,7 @@ fn formula_value(system: &mut System, sources: &Sources, formula: &Formula) -> E
             let kind = &system.model.outputs[output].kind;
             numbers(system, sources, kind)[number]
         }
-        seen => laws::see(system, &OfBodies, None, seen),
+        seen => laws::see(system, &OfBodies, Own::Nothing, seen),
     })
 }
 

@@ -2,7 +2,7 @@
 
 use crate::derive::system::System;
 use crate::expr::graph::ExprId;
-use crate::expr::vector::{Vec3, Vec4};
+use crate::expr::vector::{Mat3, Vec3, Vec4};
 use gyro_model::{BodyFrame, Number};
 
 /// A point of a body.
@@ -51,9 +51,14 @@ fn orientation(system: &mut System, frame: &BodyFrame) -> Option<Vec4> {
     Some(system.graph.normalise(&parameters))
 }
 
+/// The axes of a frame in its body, column by column; `None` where it has the body's.
+pub fn axes(system: &mut System, frame: &BodyFrame) -> Option<Mat3> {
+    let p = orientation(system, frame)?;
+    Some(system.graph.rotation(&p))
+}
+
 /// A vector in a body's frame, by the axes of a frame that is fixed there.
 pub fn by_axes(system: &mut System, frame: &BodyFrame, vector: Vec3) -> Vec3 {
-    let Some(p) = orientation(system, frame) else { return vector };
-    let axes = system.graph.rotation(&p);
+    let Some(axes) = axes(system, frame) else { return vector };
     system.graph.transposed_vec(&axes, &vector)
 }

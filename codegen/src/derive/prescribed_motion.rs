@@ -1,7 +1,7 @@
 //! Motions prescribed in time, as expressions.
 
 use crate::derive::in_time::in_time;
-use crate::derive::laws::{self, OfBodies};
+use crate::derive::laws::{self, OfBodies, Own};
 use crate::derive::system::{Pose, System};
 use crate::expr::definitions::Definitions;
 use crate::expr::differentiate::Derivative;
@@ -49,7 +49,7 @@ impl<'m> System<'m> {
             Motion::Lines(lines) => self.line(lines),
             Motion::Input([place, ..]) => self.graph.symbol(Symbol::Input(*place)),
             Motion::Formula(formula) => {
-                laws::value(self, formula, |system, seen| laws::see(system, &OfBodies, None, seen))
+                laws::value(self, formula, |system, seen| laws::see(system, &OfBodies, Own::Nothing, seen))
             }
         }
     }

@@ -107,8 +107,10 @@ impl Still<'_> {
                 OutputKind::State { state } => states[state],
                 ref kind => D::from(self.number(kind, number)),
             },
-            // Lengths are seen in links only, and nothing has happened yet.
-            Seen::Time | Seen::Length | Seen::LengthRate => D::zero(),
+            // The others are seen in links and bushings only, and nothing has happened yet.
+            Seen::Time | Seen::Length | Seen::LengthRate | Seen::Between(_) | Seen::BetweenRate(_) => {
+                D::zero()
+            }
         }
     }
 
@@ -131,9 +133,23 @@ impl Still<'_> {
                 }
                 _ => f64::NAN,
             },
+            OutputKind::Bushing { force } => match &self.model.forces[*force].kind {
+                ForceKind::Bushing(bushing) => self.between([&bushing.first, &bushing.second])[number],
+                _ => f64::NAN,
+            },
             // The reader refuses what is known only once all forces are.
             _ => f64::NAN,
         }
+    }
+
+    /// Where the second of two frames is seen from the first, and its Cardan angles there.
+    fn between(&self, frames: [&BodyFrame; 2]) -> [f64; 6] {
+        let [p, q] = frames.map(|frame| self.body(frame.body).p * self.turn(frame));
+        let [from, to] = frames.map(|frame| self.tip(frame.body, &frame.point));
+        let d = p.rotate_back(to - from);
+        let a = (p.conjugate() * q).matrix();
+        let [about_x, about_z] = [(-a[1][2]).atan2(a[2][2]), (-a[0][1]).atan2(a[0][0])];
+        [d[0], d[1], d[2], about_x, a[0][2].clamp(-1.0, 1.0).asin(), about_z]
     }
 
     fn turn(&self, frame: &BodyFrame) -> Quaternion {

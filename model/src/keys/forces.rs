@@ -2,14 +2,34 @@
 //! sense on its first, and what acts on points of bodies.
 
 use super::{
-    KIND, Key, ON_COORDINATE, ON_JOINT, POINT, Table, Value, kind, name, number, reference, strength, table,
-    word,
+    KIND, Key, ON_COORDINATE, ON_JOINT, POINT, Table, kind, name, number, orientation, reference, strength,
+    strengths, table, vector, word,
 };
+use crate::Seen;
 
 const STIFFNESS: Key = number("stiffness", "N.m/rad or N/m", "").required();
 const DAMPING: Key = strength("damping", "N.m.s/rad or N.s/m", "").not_negative(DRIVES);
 const DRIVES: &str = "it would drive the motion";
 const SIDES: &[(&str, &str)] = &[("lower", ""), ("upper", "")];
+
+/// What a link's own formula calls the distance of its ends, and the rate of that.
+const LENGTHS: &[(&str, Seen)] = &[("length", Seen::Length), ("length rate", Seen::LengthRate)];
+
+/// What a bushing's own formulas call its readings, and their rates.
+const READINGS: &[(&str, Seen)] = &[
+    ("x", Seen::Between(0)),
+    ("y", Seen::Between(1)),
+    ("z", Seen::Between(2)),
+    ("angle_x", Seen::Between(3)),
+    ("angle_y", Seen::Between(4)),
+    ("angle_z", Seen::Between(5)),
+    ("x rate", Seen::BetweenRate(0)),
+    ("y rate", Seen::BetweenRate(1)),
+    ("z rate", Seen::BetweenRate(2)),
+    ("angle_x rate", Seen::BetweenRate(3)),
+    ("angle_y rate", Seen::BetweenRate(4)),
+    ("angle_z rate", Seen::BetweenRate(5)),
+];
 
 /// `[[force]]`.
 pub static FORCE: Table = Table::new(
@@ -78,7 +98,30 @@ pub static FORCE: Table = Table::new(
                 .not_negative("lengths cannot be negative")
                 .or("required with `stiffness`"),
             strength("tension", "N", "what it pulls besides: a formula may name `length` and `length rate`")
+                .naming(LENGTHS)
                 .or("0"),
+        ],
+    ),
+    kind(
+        "bushing",
+        "−`stiffness` · u − `damping` · u̇ + `force` along each axis of the first frame, and the like about the angles \
+         between the frames, see below",
+        &[
+            table("first", &BUSHING_END, "a table of `body`, `point` and `orientation`").required(),
+            table("second", &BUSHING_END, "likewise").required(),
+            vector("stiffness", "N/m", "of x, y and z; one of the six must be there")
+                .eg("stiffness = [...], in N/m, or another of its strengths")
+                .or("[0, 0, 0]"),
+            strengths("damping", "N.s/m", "").naming(READINGS).not_negative(DRIVES).or("[0, 0, 0]"),
+            strengths("force", "N", "what is added: a formula may name the readings and their rates")
+                .naming(READINGS)
+                .or("[0, 0, 0]"),
+            vector("torsion", "N.m/rad", "of `angle_x`, `angle_y` and `angle_z`").or("[0, 0, 0]"),
+            strengths("torsional_damping", "N.m.s/rad", "")
+                .naming(READINGS)
+                .not_negative(DRIVES)
+                .or("[0, 0, 0]"),
+            strengths("torque", "N.m", "what is added, likewise").naming(READINGS).or("[0, 0, 0]"),
         ],
     ),
     kind(
@@ -87,10 +130,10 @@ pub static FORCE: Table = Table::new(
         &[
             reference("body", ""),
             POINT,
-            Key::new("force", Value::Strengths("N"), "it or `torque` must be there")
+            strengths("force", "N", "it or `torque` must be there")
                 .eg("force = [0, 0, 0], in N, or torque = [0, 0, 0], in N.m")
                 .or("[0, 0, 0]"),
-            Key::new("torque", Value::Strengths("N.m"), "").or("[0, 0, 0]"),
+            strengths("torque", "N.m", "").or("[0, 0, 0]"),
             word("frame", &[("global", ""), ("body", "")], "").or("\"global\""),
         ],
     ),
@@ -111,3 +154,14 @@ pub static FORCE: Table = Table::new(
 /// `first` and `second` of a link.
 pub static FORCE_END: Table =
     Table::new("end of a link", "A point of a body.", &[reference("body", "name of the body"), POINT]);
+
+/// `first` and `second` of a bushing.
+pub static BUSHING_END: Table = Table::new(
+    "end of a bushing",
+    "A frame of a body.",
+    &[
+        reference("body", "name of the body"),
+        POINT,
+        orientation("Euler parameters of the frame's axes").or("the body's axes"),
+    ],
+);

@@ -2,6 +2,8 @@
 //! and meaning. The reader, the checks of ranges, the JSON schema and the reference in `docs/model-format.md` come from
 //! these tables; what a key does is in the code that asks for it.
 
+use crate::Seen;
+
 mod bodies;
 mod file;
 mod forces;
@@ -10,7 +12,7 @@ mod observed;
 
 pub use bodies::{BODY, DRIVEN, ELEMENTS, POINT_MASS, ROTATION, SHAPE};
 pub use file::{FILE, GENERATE, INPUT, MOTION, SIMULATION, SINUSOID};
-pub use forces::{FORCE, FORCE_END};
+pub use forces::{BUSHING_END, FORCE, FORCE_END};
 pub use joints::{COUPLER, COUPLER_END, DRIVER, JOINT, JOINT_END};
 pub use observed::{CONTACT, CONTROLLER, CURVE, EVENT, FORMULA, OUTPUT, STATE};
 
@@ -54,6 +56,8 @@ pub struct Key {
     pub range: Range,
     /// What to write, in messages; empty where it follows from the rest.
     pub example: &'static str,
+    /// What formulas under it may name besides what all formulas may.
+    pub own: &'static [(&'static str, Seen)],
     /// The name that the key had before, under which it is still read; empty for none.
     pub former: &'static str,
     /// What it means, in Markdown.
@@ -174,7 +178,17 @@ impl Key {
 
     const fn new(name: &'static str, value: Value, meaning: &'static str) -> Self {
         let range = Range::Any;
-        Self { name, value, is_required: false, default: "", range, example: "", former: "", meaning }
+        Self {
+            name,
+            value,
+            is_required: false,
+            default: "",
+            range,
+            example: "",
+            own: &[],
+            former: "",
+            meaning,
+        }
     }
 
     const fn required(self) -> Self {
@@ -199,6 +213,10 @@ impl Key {
 
     const fn eg(self, example: &'static str) -> Self {
         Self { example, ..self }
+    }
+
+    const fn naming(self, own: &'static [(&'static str, Seen)]) -> Self {
+        Self { own, ..self }
     }
 
     const fn formerly(self, former: &'static str) -> Self {
@@ -233,6 +251,11 @@ const fn number(name: &'static str, unit: &'static str, meaning: &'static str) -
 
 const fn strength(name: &'static str, unit: &'static str, meaning: &'static str) -> Key {
     Key::new(name, Value::Strength(unit), meaning)
+}
+
+/// Three strengths of a force.
+const fn strengths(name: &'static str, unit: &'static str, meaning: &'static str) -> Key {
+    Key::new(name, Value::Strengths(unit), meaning)
 }
 
 const fn plain(name: &'static str, unit: &'static str, meaning: &'static str) -> Key {

@@ -50,6 +50,11 @@ pub static OUTPUT: Table = Table::new(
     kind("spring", "torque or force of the spring (N·m or N), and its deflection (rad or m)", FORCE),
     kind("link", "force with which the link pushes its ends apart (N), and its length (m)", FORCE),
     kind(
+        "bushing",
+        "where its second frame is, seen from the first (m and rad), and force or torque along each of these (N and N·m)",
+        FORCE,
+    ),
+    kind(
         "formula",
         "the value of a formula, see [laws](laws.md)",
         &[text("of", "the formula").required().eg("of = \"...\"")],

@@ -115,7 +115,12 @@ impl Formula {
         self.sees().filter_map(|seen| match seen {
             Seen::Coordinate(on) => Some((on, CoordinateUse::Value)),
             Seen::Rate(on) => Some((on, CoordinateUse::Rate)),
-            Seen::Output { .. } | Seen::Time | Seen::Length | Seen::LengthRate => None,
+            Seen::Output { .. }
+            | Seen::Time
+            | Seen::Length
+            | Seen::LengthRate
+            | Seen::Between(_)
+            | Seen::BetweenRate(_) => None,
         })
     }
 }

@@ -2,10 +2,10 @@
 
 use super::reader::Reader;
 use super::section::Section;
-use super::{references, tables};
+use super::{outputs, references, tables};
 use crate::keys::Kind;
 use crate::validate::{Owner, Side};
-use crate::{Force, ForceKind, JointCoordinate, LoadFrame, Number, StopSide};
+use crate::{BodyFrame, Bushing, BushingLaw, Force, ForceKind, JointCoordinate, LoadFrame, Number, StopSide};
 
 /// All tables of forces, whose names others refer to.
 pub(super) fn open<'t>(reader: &mut Reader<'_>, page: &Section<'t>) -> Vec<(Section<'t>, String)> {
@@ -31,7 +31,7 @@ struct Reading<'r, 't, 's> {
     index: usize,
 }
 
-impl Reading<'_, '_, '_> {
+impl<'s> Reading<'_, '_, 's> {
     fn force(&mut self, kind: &Kind) -> ForceKind {
         match kind.word {
             "spring" => ForceKind::Spring {
@@ -56,6 +56,7 @@ impl Reading<'_, '_, '_> {
             },
             "motor" => ForceKind::Motor { on: self.on(), value: self.number("value") },
             "link" => self.link(),
+            "bushing" => self.bushing(),
             "potential" => {
                 let energy = self.number("energy");
                 self.sloping("energy", ForceKind::Potential { energy })
@@ -94,6 +95,31 @@ impl Reading<'_, '_, '_> {
         }
     }
 
+    fn bushing(&mut self) -> ForceKind {
+        let [first, second] = Side::BOTH.map(|side| self.frame(side));
+        let own = ["damping", "force", "torsion", "torsional_damping", "torque"];
+        if !own.iter().any(|key| self.section.has(key)) {
+            self.section.require(self.reader, "stiffness");
+        }
+        let mut law = |keys: [&'static str; 3]| {
+            let [stiffness, damping, load] = keys.map(|key| self.section.vector(self.reader, key));
+            BushingLaw { stiffness, damping, load }
+        };
+        let along = law(["stiffness", "damping", "force"]);
+        let about = law(["torsion", "torsional_damping", "torque"]);
+        ForceKind::Bushing(Box::new(Bushing { first, second, along, about }))
+    }
+
+    /// A frame of a body.
+    fn frame(&mut self, side: Side) -> BodyFrame {
+        match self.inner(side) {
+            Some(end) => outputs::frame(self.reader, &end),
+            None => {
+                BodyFrame { body: references::NOTHING, point: [0; 3].map(Number::integer), orientation: None }
+            }
+        }
+    }
+
     /// What acts by the slopes of a formula, which must not be zero for want of names.
     fn sloping(&mut self, key: &'static str, kind: ForceKind) -> ForceKind {
         let place = self.section.place(key);
@@ -112,12 +138,16 @@ impl Reading<'_, '_, '_> {
 
     /// A body and a point on it.
     fn end(&mut self, side: Side) -> (usize, [Number; 3]) {
-        let title = format!("`{}` of {}", side.key(), self.section.title);
-        let owner = Owner::ForceEnd(self.index, side);
-        let Some(end) = self.section.inner(self.reader, side.key(), (owner, &title)) else {
+        let Some(end) = self.inner(side) else {
             return (references::NOTHING, [0; 3].map(Number::integer));
         };
         (references::index(self.reader, &end, "body"), end.vector(self.reader, "point"))
+    }
+
+    fn inner(&mut self, side: Side) -> Option<Section<'s>> {
+        let title = format!("`{}` of {}", side.key(), self.section.title);
+        let owner = Owner::ForceEnd(self.index, side);
+        self.section.inner(self.reader, side.key(), (owner, &title))
     }
 
     fn load(&mut self) -> ForceKind {

@@ -11,9 +11,6 @@ use super::seen::Known;
 use super::{names, seen};
 use crate::{Number, Operation, OutputKind, Seen};
 
-/// What a link's own formula calls the distance of its ends, and the rate of that.
-const LENGTHS: [(&str, Seen); 2] = [("length", Seen::Length), ("length rate", Seen::LengthRate)];
-
 /// The strength that a text denotes.
 pub(super) fn strength(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Number> {
     let known = known(reader, item);
@@ -72,8 +69,7 @@ pub(super) fn is_meant(reader: &Reader<'_>, item: Item<'_>, name: &str) -> bool 
 
 /// What a formula under a key may name.
 fn known(reader: &Reader<'_>, item: Item<'_>) -> Known {
-    let own = LENGTHS.iter().filter(|_| item.key.name == "tension");
-    let own = own.map(|(name, seen)| ((*name).to_owned(), *seen));
+    let own = item.key.own.iter().map(|(name, seen)| ((*name).to_owned(), *seen));
     own.chain(reader.visible.iter().cloned()).collect()
 }
 
@@ -84,6 +80,7 @@ fn refused(kinds: &[OutputKind], what: &str, (name, seen): (&str, Seen)) -> Opti
         OutputKind::Pose(_) | OutputKind::Velocity(_) | OutputKind::State { .. } => true,
         OutputKind::Inertial(_) => number >= 3,
         OutputKind::Link { .. } => number == 1,
+        OutputKind::Bushing { .. } => number < 6,
         _ => false,
     };
     (!is_early).then(|| {

@@ -57,6 +57,7 @@ fn output(reader: &mut Reader<'_>, section: &Section<'_>, kind: &str) -> OutputK
         "coupler" => OutputKind::Coupler { coupler: index("coupler") },
         "spring" => OutputKind::Spring { force: index("force") },
         "link" => OutputKind::Link { force: index("force") },
+        "bushing" => OutputKind::Bushing { force: index("force") },
         "power" => OutputKind::Power,
         "energy" => OutputKind::Energy,
         "formula" => OutputKind::Formula(Formula::seen("t", Seen::Time)),
@@ -67,7 +68,8 @@ fn output(reader: &mut Reader<'_>, section: &Section<'_>, kind: &str) -> OutputK
     }
 }
 
-fn frame(reader: &mut Reader<'_>, section: &Section<'_>) -> BodyFrame {
+/// A frame of a body.
+pub(super) fn frame(reader: &mut Reader<'_>, section: &Section<'_>) -> BodyFrame {
     BodyFrame {
         body: references::index(reader, section, "body"),
         point: section.vector(reader, "point"),

@@ -4,7 +4,7 @@
 //! One word may stand for several of ours; which is meant depends on the keys that are known in its place.
 
 /// Words of others, each with those of ours that it may stand for, the likeliest first.
-const WORDS: [(&str, &str); 67] = [
+const WORDS: [(&str, &str); 68] = [
     // Kinds of joint.
     ("hinge pin continuous rotary rotational rotation pivot_joint r", "revolute"),
     ("slide slider sliding translational linear prism p", "prismatic"),
@@ -19,6 +19,7 @@ const WORDS: [(&str, &str); 67] = [
     // Kinds of force.
     ("torsion torsion_spring rotational_spring elastic compliance", "spring"),
     ("tsda spring_damper springdamper translational_spring tendon cable rope", "link"),
+    ("bush mount rubber_mount field force_field spring_6dof", "bushing"),
     ("viscous dashpot viscous_friction", "damper"),
     ("dry_friction stiction frictionloss rubbing", "coulomb"),
     ("end_stop endstop hard_stop limits bumper buffer contact", "stop"),
@@ -141,10 +142,6 @@ pub(super) fn no_kind(written: &str, what: &str) -> Option<&'static str> {
             "write a [[driver]] for a coordinate of a joint"
         }
         ("kind of force", "gravity") => "write gravity = [...] at the top of the model file",
-        ("kind of force", "bushing" | "mount" | "field") => {
-            "there is no force between two frames: join the bodies by joints of one coordinate each, with light bodies \
-             between them, and put a \"spring\" and a \"damper\" on each coordinate"
-        }
         ("kind of output", "angle" | "rate" | "joint" | "coordinate") => {
             "remove it: joints' coordinates and rates are always among the results"
         }

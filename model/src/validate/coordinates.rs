@@ -134,18 +134,19 @@ fn contradicting_drivers(model: &Model, groups: &mut Groups) -> Vec<Problem> {
     found
 }
 
-/// A link from a body to itself, or a force that can move nothing.
+/// A link or a bushing from a body to itself, or a force that can move nothing.
 fn idle_force(model: &Model, index: usize) -> Option<Problem> {
     let force = &model.forces[index];
     let moves = |body: &usize| model.bodies.get(*body).is_none_or(|b| b.support.has_coordinates());
     match &force.kind {
-        ForceKind::Link { first: (first, _), second: (second, _), .. } => {
+        ForceKind::Link { .. } | ForceKind::Bushing(_) => {
+            let (word, [first, second]) = force.kind.between()?;
             let place = |side| Place { owner: Owner::ForceEnd(index, side), key: "body" };
             let (message, label) = if first == second {
-                (format!("link `{}` joins a body to itself", force.name), "the same body as the first")
-            } else if !moves(first) && !moves(second) {
+                (format!("{word} `{}` joins a body to itself", force.name), "the same body as the first")
+            } else if !moves(&first) && !moves(&second) {
                 (
-                    format!("link `{}` joins two bodies that it cannot move", force.name),
+                    format!("{word} `{}` joins two bodies that it cannot move", force.name),
                     "fixed or driven, too",
                 )
             } else {
@@ -174,15 +175,15 @@ fn idle_force(model: &Model, index: usize) -> Option<Problem> {
 /// An output of a body that does not move, or a driver's where it has none.
 fn fixed_output(model: &Model, index: usize) -> Option<Problem> {
     let output = &model.outputs[index];
-    if let OutputKind::Spring { force } | OutputKind::Link { force } = output.kind {
-        let (force, is_spring) = (model.forces.get(force)?, matches!(output.kind, OutputKind::Spring { .. }));
-        let fits = match force.kind {
-            ForceKind::Spring { .. } => is_spring,
-            ForceKind::Link { .. } => !is_spring,
-            _ => false,
-        };
-        let kind = if is_spring { "spring" } else { "link" };
-        return (!fits).then(|| {
+    let of_force = match output.kind {
+        OutputKind::Spring { force } => Some((force, "spring")),
+        OutputKind::Link { force } => Some((force, "link")),
+        OutputKind::Bushing { force } => Some((force, "bushing")),
+        _ => None,
+    };
+    if let Some((force, kind)) = of_force {
+        let force = model.forces.get(force)?;
+        return (force.kind.parts().word != kind).then(|| {
             Problem::new(
                 Place { owner: Owner::Output(index), key: "force" },
                 format!("output `{}` is of a {kind}, and `{}` is none", output.name, force.name),

@@ -4,7 +4,7 @@ use num_traits::Zero;
 
 use super::{Owner, Place, Problem, Side, rounded};
 use crate::kinematics::cross;
-use crate::{Body, Joint, JointEnd, JointKind, Model, Number, Output, Rational};
+use crate::{Body, BodyFrame, Force, ForceKind, Joint, JointEnd, JointKind, Model, Number, Output, Rational};
 
 /// The orientation of a body.
 pub(super) fn of_body(model: &Model, index: usize, body: &Body) -> Option<Problem> {
@@ -27,6 +27,16 @@ pub(super) fn of_output(model: &Model, index: usize, output: &Output) -> Option<
     let parameters = output.kind.frame()?.orientation.as_ref()?;
     let place = Place { owner: Owner::Output(index), key: "orientation" };
     zero_parameters(model, parameters, place, &format!("output `{}`", output.name))
+}
+
+/// The orientations of a bushing's frames.
+pub(super) fn of_force(model: &Model, index: usize, force: &Force) -> Vec<Problem> {
+    let ForceKind::Bushing(bushing) = &force.kind else { return Vec::new() };
+    let one = |(side, frame): (Side, &BodyFrame)| {
+        let place = Place { owner: Owner::ForceEnd(index, side), key: "orientation" };
+        zero_parameters(model, frame.orientation.as_ref()?, place, &format!("force `{}`", force.name))
+    };
+    Side::BOTH.into_iter().zip(bushing.ends()).filter_map(one).collect()
 }
 
 fn zero_parameters(model: &Model, parameters: &[Number; 4], place: Place, of: &str) -> Option<Problem> {

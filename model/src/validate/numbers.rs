@@ -29,6 +29,7 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     }
     for (index, force) in model.forces.iter().enumerate() {
         found.extend(Ranged::of_force(index, force).problems(model));
+        found.extend(directions::of_force(model, index, force));
     }
     for (index, controller) in model.controllers.iter().enumerate() {
         found.extend(controllers::problems(model, index, controller));

@@ -393,7 +393,7 @@ fn things_that_are_elsewhere_are_explained() {
     check("kind = \"revolute\"", "kind = \"gearbox\"", "[[coupler]]");
     check("damping = 0.1", "stiffness = 0.1", "[[force]] of kind \"spring\"");
     check("damping = 0.1", "range = [0, 1]", "[[force]] of kind \"stop\"");
-    check("kind = \"spring\"", "kind = \"bushing\"", "joints of one coordinate each");
+    check("kind = \"spring\"", "kind = \"mount\"", "write `bushing`");
     check("stiffness = 2", "stiffness = \"10 + 5*shoulder^2\"", "`shoulder` is a joint, which moves");
     check("mass = 1", "mass = 1\ncom = [0, 0, 1]", "origin at the mass centre");
 }

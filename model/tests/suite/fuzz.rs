@@ -238,7 +238,9 @@ fn check_references(model: &Model) {
             OutputKind::Reaction { joint } => assert!(joint < model.joints.len()),
             OutputKind::Driver { driver } => assert!(driver < model.drivers.len()),
             OutputKind::Coupler { coupler } => assert!(coupler < model.couplers.len()),
-            OutputKind::Spring { force } | OutputKind::Link { force } => assert!(force < model.forces.len()),
+            OutputKind::Spring { force } | OutputKind::Link { force } | OutputKind::Bushing { force } => {
+                assert!(force < model.forces.len());
+            }
             OutputKind::State { state } => assert!(state < model.states.len()),
             OutputKind::Formula(_) | OutputKind::Energy | OutputKind::Power => {}
         }
@@ -246,6 +248,9 @@ fn check_references(model: &Model) {
     for force in &model.forces {
         match &force.kind {
             ForceKind::Link { first, second, .. } => assert!(first.0.max(second.0) < model.bodies.len()),
+            ForceKind::Bushing(bushing) => {
+                bushing.ends().iter().for_each(|frame| assert!(frame.body < model.bodies.len()));
+            }
             ForceKind::Load { body, .. } => assert!(*body < model.bodies.len()),
             kind => {
                 let slopes = kind.slopes().into_iter().flat_map(|(_, along)| along);

@@ -43,7 +43,7 @@ fn described(mut schema: Json, description: &str) -> Json {
 fn table(of: &'static Table, definitions: &mut Map<String, Json>) -> Json {
     let mut properties = Map::new();
     for key in of.all() {
-        let mut schema = value(of, key.value, key.is_required, definitions);
+        let mut schema = values(of, key, definitions);
         let description = description(of, key);
         if !description.is_empty() {
             schema = described(schema, &description);
@@ -62,6 +62,18 @@ fn table(of: &'static Table, definitions: &mut Map<String, Json>) -> Json {
         "required": required,
         "additionalProperties": false,
     })
+}
+
+/// What may stand under a key: in different kinds it may be different things.
+fn values(of: &'static Table, key: &Key, definitions: &mut Map<String, Json>) -> Json {
+    let mut schemas = vec![value(of, key.value, key.is_required, definitions)];
+    for own in of.kinds.iter().filter_map(|kind| kind.key(key.name)) {
+        let schema = value(of, own.value, own.is_required, definitions);
+        if !schemas.contains(&schema) {
+            schemas.push(schema);
+        }
+    }
+    if schemas.len() > 1 { json!({ "anyOf": schemas }) } else { schemas.remove(0) }
 }
 
 fn value(of: &'static Table, value: Value, is_required: bool, definitions: &mut Map<String, Json>) -> Json {

@@ -5,9 +5,9 @@ use crate::dice::Dice;
 use crate::page::Page;
 
 /// What a formula may name, and the dice that decide on it.
-struct Words<'d> {
-    dice: &'d mut Dice,
-    names: Vec<String>,
+pub struct Words<'d> {
+    pub dice: &'d mut Dice,
+    pub names: Vec<String>,
 }
 
 /// Functions and operators with one operand, whatever that is.
@@ -55,7 +55,7 @@ const OF_TWO: [&str; 14] = [
 ];
 
 impl Words<'_> {
-    fn formula(&mut self, depth: usize) -> String {
+    pub fn formula(&mut self, depth: usize) -> String {
         if depth == 0 {
             return match self.dice.below(5) {
                 0 => self.dice.pick(&["0.3", "2", "1/3", "30 deg", "pi", "1e-3"]).to_owned(),

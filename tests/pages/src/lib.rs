@@ -14,6 +14,7 @@
 #![deny(missing_docs)]
 
 mod bodies;
+mod bushings;
 mod closing;
 mod dice;
 mod elements;
@@ -63,6 +64,7 @@ fn text(mut page: Page, seed: u64) -> String {
     page.elastic_outputs();
     page.laws(seed);
     page.curves(seed);
+    page.bushings(seed);
     page.read();
     page.text()
 }

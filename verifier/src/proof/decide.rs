@@ -55,8 +55,9 @@ pub struct Decider<'a, const L: usize> {
     prime: Prime<L>,
 }
 
-/// Draws at most this often where something divides by zero: at a random point only what is zero everywhere is zero.
-const DRAWS_BY_ZERO: usize = 3;
+/// Draws at most this often where something divides by zero: at a random point only what is zero everywhere is zero,
+/// but for the sum of a number and of the root of its square, which is zero at every other point.
+const DRAWS_BY_ZERO: usize = 32;
 
 /// The way to a point at which all roots exist. Those of parameters are found one group after the other, as many as
 /// there are: parameters whose roots all exist stay as they are.

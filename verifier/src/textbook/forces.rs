@@ -2,7 +2,7 @@
 
 use super::Evaluation;
 use super::jet::Jet;
-use super::laws::Slopes;
+use super::laws::{Own, Slopes};
 use super::linear::Vector;
 use super::load::Load;
 use crate::field::Field;
@@ -55,6 +55,7 @@ impl<F: Field> Evaluation<'_, F> {
             }
             ForceKind::Motor { on, value } => self.work_along(forces, *on, &self.strength(value)?),
             ForceKind::Link { .. } => self.add_link(forces, kind)?,
+            ForceKind::Bushing(bushing) => self.add_bushing(forces, bushing)?,
             ForceKind::Load { .. } => self.add_load(forces, kind)?,
             ForceKind::Potential { energy } => {
                 let Slopes { value, along } =
@@ -129,7 +130,7 @@ impl<F: Field> Evaluation<'_, F> {
                 let growth = line.dot(&drift) * length.reciprocal()?;
                 let pull = self.scope.number(stiffness) * (length.clone() - self.scope.number(free_length));
                 let [damping, tension] =
-                    [damping, tension].map(|number| self.strength_along(number, Some([&length, &growth])));
+                    [damping, tension].map(|number| self.strength_of(number, Own::Line([&length, &growth])));
                 [-(pull + damping? * &growth + tension?), length]
             }
             _ => return None,
@@ -150,7 +151,7 @@ impl<F: Field> Evaluation<'_, F> {
         let unit = d.times(&length.reciprocal()?);
         let speed = unit.dot(&(j.velocity(&s_j) - i.velocity(&s_i)));
         let [damping, tension] =
-            [damping, tension].map(|number| self.strength_along(number, Some([&length, &speed])));
+            [damping, tension].map(|number| self.strength_of(number, Own::Line([&length, &speed])));
         let stretch = length - free;
         let (pull, drag) = (stiffness * &stretch, damping? * &speed + tension?);
         let force = unit.times(&-(&pull + &drag));
@@ -192,7 +193,7 @@ impl<F: Field> Evaluation<'_, F> {
 }
 
 impl<F: Field> Forces<F> {
-    fn push(&mut self, body: usize, load: &Load<F>) {
+    pub(super) fn push(&mut self, body: usize, load: &Load<F>) {
         self.loads[body] = self.loads[body].plus(load);
     }
 }

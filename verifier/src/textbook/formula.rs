@@ -259,9 +259,8 @@ impl<'t, F: Field> Text<'t, '_, F> {
     /// What the model file calls by a name: of what moves a column, of numbers a parameter or an input.
     fn named(&mut self, name: &str) -> Option<Value<F>> {
         let model = self.model;
-        let links = [("length", Seen::Length), ("length rate", Seen::LengthRate)];
-        if let Some((_, seen)) = links.iter().find(|(known, _)| *known == name)
-            && let Some(jet) = (self.see)(*seen)
+        if let Some(seen) = of_own_ends(name)
+            && let Some(jet) = (self.see)(seen)
         {
             return Some(moving(jet));
         }
@@ -273,7 +272,9 @@ impl<'t, F: Field> Text<'t, '_, F> {
         let input = model.inputs.iter().position(|input| input.name == name);
         let derived = model.derived_parameters.iter().find(|parameter| parameter.name == name);
         if let Some((_, formula)) = model.formulas.iter().find(|(known, _)| known == name) {
-            return value(model, self.scope, self.see, &formula.text).map(moving);
+            // It is no part of the law that names it, and has no ends.
+            let see = |seen| if is_of_own_ends(seen) { None } else { (self.see)(seen) };
+            return value(model, self.scope, &see, &formula.text).map(moving);
         }
         match (parameter, input, derived) {
             (Some(index), ..) => self.number(&Number::Parameter { index, negated: false }),
@@ -433,6 +434,29 @@ impl<'t, F: Field> Text<'t, '_, F> {
             _ => of(&a.jet, &b.jet).map(moving),
         }
     }
+}
+
+/// What the laws of links and bushings call what they see of their own ends.
+fn of_own_ends(name: &str) -> Option<Seen> {
+    let (place, is_rate) = match name.strip_suffix(" rate") {
+        Some(place) => (place, true),
+        None => (name, false),
+    };
+    let reading = match place {
+        "length" => return Some(if is_rate { Seen::LengthRate } else { Seen::Length }),
+        "x" => 0,
+        "y" => 1,
+        "z" => 2,
+        "angle_x" => 3,
+        "angle_y" => 4,
+        "angle_z" => 5,
+        _ => return None,
+    };
+    Some(if is_rate { Seen::BetweenRate(reading) } else { Seen::Between(reading) })
+}
+
+fn is_of_own_ends(seen: Seen) -> bool {
+    matches!(seen, Seen::Length | Seen::LengthRate | Seen::Between(_) | Seen::BetweenRate(_))
 }
 
 fn moving<F>(jet: Jet<F>) -> Value<F> {

@@ -17,10 +17,27 @@ pub(super) struct Slopes<F> {
     pub(super) along: Vec<(JointCoordinate, Jet<F>)>,
 }
 
+/// What the laws of links and bushings see of their own ends.
+pub(super) enum Own<'o, F> {
+    Nothing,
+    /// The distance of the ends of a link, and its rate.
+    Line([&'o Jet<F>; 2]),
+    /// The readings of a bushing, and their rates.
+    Frames([&'o [Jet<F>; 6]; 2]),
+}
+
+impl<F> Clone for Own<'_, F> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<F> Copy for Own<'_, F> {}
+
 impl<F: Field> Evaluation<'_, F> {
     /// A strength; `None` where it is not defined.
     pub(super) fn strength(&self, number: &Number) -> Option<Jet<F>> {
-        self.strength_along(number, None)
+        self.strength_of(number, Own::Nothing)
     }
 
     /// Three of them.
@@ -28,14 +45,16 @@ impl<F: Field> Evaluation<'_, F> {
         Some(Vector([self.strength(x)?, self.strength(y)?, self.strength(z)?]))
     }
 
-    /// A strength of a link, with the distance of its ends and the rate of that.
-    pub(super) fn strength_along(&self, number: &Number, line: Option<[&Jet<F>; 2]>) -> Option<Jet<F>> {
+    /// A strength of what sees its own ends.
+    pub(super) fn strength_of(&self, number: &Number, own: Own<'_, F>) -> Option<Jet<F>> {
         let Number::Formula(formula) = number else { return Some(self.scope.number(number)) };
-        let see = |seen| match seen {
-            Seen::Length => line.map(|[length, _]| length.clone()),
-            Seen::LengthRate => line.map(|[_, rate]| rate.clone()),
-            Seen::Output { output, number } => self.early(output, number).map(Jet::constant),
-            seen => self.sight(seen),
+        let see = |seen| match (seen, own) {
+            (Seen::Length, Own::Line([length, _])) => Some(length.clone()),
+            (Seen::LengthRate, Own::Line([_, rate])) => Some(rate.clone()),
+            (Seen::Between(k), Own::Frames([places, _])) => Some(places[k].clone()),
+            (Seen::BetweenRate(k), Own::Frames([_, rates])) => Some(rates[k].clone()),
+            (Seen::Output { output, number }, _) => self.early(output, number).map(Jet::constant),
+            (seen, _) => self.sight(seen),
         };
         self.read(&formula.text, &see)
     }
@@ -93,7 +112,11 @@ impl<F: Field> Evaluation<'_, F> {
             Seen::Time => Some(Jet::constant(self.scope.point.t.clone())),
             Seen::Coordinate(on) => self.coordinate(on, &self.still),
             Seen::Rate(on) => Some(self.coordinate_rate(on)),
-            Seen::Output { .. } | Seen::Length | Seen::LengthRate => None,
+            Seen::Output { .. }
+            | Seen::Length
+            | Seen::LengthRate
+            | Seen::Between(_)
+            | Seen::BetweenRate(_) => None,
         }
     }
 
@@ -112,6 +135,11 @@ impl<F: Field> Evaluation<'_, F> {
                 let line = to - from;
                 self.scope.sqrt(&line.dot(&line)).map(|length| length.value)
             }
+            OutputKind::Bushing { force } => {
+                let ForceKind::Bushing(bushing) = &model.forces[*force].kind else { return None };
+                let [places, _] = self.seen_between(bushing)?;
+                places.get(number).map(|place| place.value.clone())
+            }
             kind @ (OutputKind::Pose(_) | OutputKind::Velocity(_) | OutputKind::State { .. }) => {
                 self.output(kind, &[], &[])?.get(number).cloned()
             }
@@ -121,13 +149,35 @@ impl<F: Field> Evaluation<'_, F> {
 }
 
 impl Evaluation<'_, f64> {
-    /// Whether all formulas of forces, states and outputs have finite values and derivatives here.
+    /// Whether all formulas of forces, states and outputs have finite values and derivatives here, and bushings readings that
+    /// formulas and outputs see.
     pub fn has_smooth_formulas(&self) -> bool {
-        self.textbook.model.laws().all(|formula| {
+        let model = self.textbook.model;
+        let are_clear = model.forces.iter().enumerate().all(|(index, force)| match &force.kind {
+            ForceKind::Bushing(bushing) => !self.is_seen(index) || self.is_clear(bushing),
+            _ => true,
+        });
+        if !are_clear {
+            return false;
+        }
+        let of_forces = model.forces.iter().flat_map(|force| {
+            let own = match &force.kind {
+                ForceKind::Bushing(bushing) => self.seen_between(bushing),
+                _ => None,
+            };
+            let numbers = force.kind.parts().numbers.into_iter().flat_map(|(_, numbers)| numbers);
+            numbers.filter_map(Number::formula).map(move |formula| (formula, own.clone()))
+        });
+        let of_outputs = model.outputs.iter().filter_map(|output| output.kind.formula());
+        let of_states = model.states.iter().filter_map(|state| state.rate.formula());
+        of_forces.chain(of_outputs.chain(of_states).map(|formula| (formula, None))).all(|(formula, own)| {
             let see = |by: Seen| {
                 let see = |seen| {
+                    let of_own = |which: usize, k: usize| Some(own.as_ref()?[which][k].value);
                     let known = match seen {
                         Seen::Output { output, number } => self.early(output, number),
+                        Seen::Between(k) => of_own(0, k),
+                        Seen::BetweenRate(k) => of_own(1, k),
                         seen => self.sight(seen).map(|jet| jet.value),
                     };
                     // Lengths, accelerations and multipliers are looked at where they come from.

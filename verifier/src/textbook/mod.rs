@@ -9,6 +9,7 @@
 
 mod armature;
 mod attitude;
+mod bushing;
 mod coordinate;
 mod dynamics;
 mod forces;

@@ -118,6 +118,7 @@ impl<F: Field> Evaluation<'_, F> {
                 let [force, torque] = self.reaction(*joint, lambda)?;
                 values(force, &torque.0)
             }
+            OutputKind::Bushing { force } => self.told_of_bushing(*force)?,
             OutputKind::Formula(formula) => {
                 vec![self.formula_output(&formula.text, accelerations, lambda)?]
             }

@@ -134,7 +134,7 @@ impl<F: Field> Evaluation<'_, F> {
     }
 
     /// p on its way at a constant w': `ṗ = ½ G(p)ᵀ w'`, and so `p̈ = ½ G(ṗ)ᵀ w'` as G is linear.
-    fn turning(&self, p: &Euler<F>, w: &Vector<F>) -> Euler<F> {
+    pub(super) fn turning(&self, p: &Euler<F>, w: &Vector<F>) -> Euler<F> {
         let rate = self.scope.euler_rate(p, w);
         let second = self.scope.euler_rate(&rate, w);
         from_fn(|k| Jet {

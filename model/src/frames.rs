@@ -1,0 +1,66 @@
+//! Frames that are fixed in bodies, and what acts between two of them.
+
+use crate::Number;
+
+/// A frame that is fixed in a body.
+#[derive(Clone, Debug)]
+pub struct BodyFrame {
+    /// Index of the body.
+    pub body: usize,
+    /// Its origin in the body's frame, m.
+    pub point: [Number; 3],
+    /// How it is turned in the body's frame: Euler parameters of any length; `None` where it has the body's axes.
+    pub orientation: Option<[Number; 4]>,
+}
+
+/// What acts between two frames by where the second is, seen from the first.
+///
+/// With `A_1` and `A_2` the rotation matrices of the frames and d from the origin of the first to that of the second,
+/// its six *readings* are the components x, y, z of `A_1ᵀ d` and the Cardan angles of `A_1ᵀ A_2 = R_x(angle_x)
+/// R_y(angle_y) R_z(angle_z)`: `angle_y` is between −π/2 and π/2, where the others are not defined, and these are
+/// between −π and π.
+///
+/// Each reading u has the force or torque `−stiffness u − damping u̇ + load`, and together they have the power Σ f u̇
+/// on the two bodies. So the force acts on the second body at the origin of the second frame, and its opposite on the
+/// first *at the same point of space*. The springs are conservative.
+#[derive(Clone, Debug)]
+pub struct Bushing {
+    /// The first frame.
+    pub first: BodyFrame,
+    /// The second frame.
+    pub second: BodyFrame,
+    /// Along the axes of the first frame: N/m, N·s/m and N.
+    pub along: BushingLaw,
+    /// About the axes of the Cardan angles: N·m/rad, N·m·s/rad and N·m.
+    pub about: BushingLaw,
+}
+
+/// What a bushing does along three of its readings.
+#[derive(Clone, Debug)]
+pub struct BushingLaw {
+    /// Of the springs.
+    pub stiffness: [Number; 3],
+    /// Of the dampers.
+    pub damping: [Number; 3],
+    /// What is added; formulas of it and of the damping may name the readings and their rates.
+    pub load: [Number; 3],
+}
+
+impl Bushing {
+    /// The names of its readings.
+    pub const READINGS: [&'static str; 6] = ["x", "y", "z", "angle_x", "angle_y", "angle_z"];
+
+    /// Its frames.
+    pub fn ends(&self) -> [&BodyFrame; 2] {
+        [&self.first, &self.second]
+    }
+
+    /// What it does along its readings, in their order: stiffness, damping and load of each.
+    pub fn strengths(&self) -> [[&Number; 3]; 6] {
+        let one = |k: usize| {
+            let law = if k < 3 { &self.along } else { &self.about };
+            [&law.stiffness[k % 3], &law.damping[k % 3], &law.load[k % 3]]
+        };
+        std::array::from_fn(one)
+    }
+}
