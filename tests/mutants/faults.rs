@@ -145,7 +145,7 @@ const FAULTS: &[Fault] = &[
     // Bushings.
     fault("derive/between.rs", "mount", "Load { force: graph.neg_vec(&global), torque: «graph.neg_vec(&taken)» };", "taken"),
     fault("derive/between.rs", "mount", "let taken = «graph.add_vec(&moment, &torque)»;", "torque"),
-    fault("derive/between.rs", "mount", "let about_y = graph.scale_vec(steep, «&[Graph::ZERO, zz, minus_yz]»);", "&[Graph::ZERO, zz, yz]"),
+    fault("derive/between.rs", "mount", "let about_y = graph.scale_vec(steep, &«[Graph::ZERO, zz, minus_yz]»);", "[Graph::ZERO, zz, yz]"),
     fault("derive/between.rs", "mount", "let about_x = «graph.sub_vec(&[Graph::ONE, Graph::ZERO, Graph::ZERO], &lifted)»;", "[Graph::ONE, Graph::ZERO, Graph::ZERO]"),
     fault("derive/between.rs", "mount", "(arm, «graph.sub_vec(&drift, &carried)»)", "drift"),
     fault("derive/between.rs", "mount", "let spin = «graph.sub_vec(&carried, &i.w)»;", "carried"),
