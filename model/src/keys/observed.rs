@@ -164,7 +164,7 @@ pub static CURVE: Table = Table::new(
     &[
         name("name, unlike those of functions, joints, outputs, parameters, inputs and formulas"),
         text("table", "name of a CSV file, looked for from the folder of the model file")
-            .eg("table = \"file.csv\", or points = [[0, 0], [1, 2]]")
+            .eg("table = \"...\", a CSV file, or points = [[0, 0], [1, 2]]")
             .or("none"),
         Key::new("columns", Value::Texts(2, 2), "of a table: the names of its columns of argument and value")
             .eg("columns = [\"x\", \"y\"]: argument and value")

@@ -78,7 +78,8 @@ fn points(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Vec<(f64, f64)>> {
     const EXPECTED: &str = "an array of at least two points [argument, value]";
     let rows: Vec<Vec<Item<'_>>> = item.elements().map(|row| row.elements().collect()).collect();
     if rows.len() < 2 || rows.iter().any(|row| row.len() != 2) {
-        item.wrong_type(reader, EXPECTED);
+        let help = "write two or more points, each of argument and value: [[0, 0], [1, 2]]";
+        item.wrong_type_with(reader, EXPECTED, help.to_owned());
         return None;
     }
     all(rows.iter().map(|row| {
