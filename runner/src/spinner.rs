@@ -40,6 +40,7 @@ impl Spinner {
         Start {
             positions: state[..7].to_vec(),
             velocities: state[7..].to_vec(),
+            states: vec![],
             turn_references: vec![],
             angles: vec![0.0],
             inputs: vec![],

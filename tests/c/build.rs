@@ -5,7 +5,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-const PAGES: [&str; 8] = [
+const PAGES: [&str; 9] = [
     "models/gyroscope.toml",
     "models/driven-gyroscope.toml",
     "models/four-bar.toml",
@@ -13,6 +13,7 @@ const PAGES: [&str; 8] = [
     "models/gyroscope-stiff.toml",
     "tests/models/cam.toml",
     "tests/models/curves.toml",
+    "tests/models/states.toml",
     "examples/arm/arm.toml",
 ];
 /// Templates of `gyro new`: a cart with motor and spring, a robot arm with motors; and how they are called here.

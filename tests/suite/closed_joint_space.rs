@@ -76,7 +76,7 @@ impl<'m, M: JointSpace<Scalar = f64>> Walk<'m, M> {
             own.iter_mut().for_each(|x| *x += STRIDE * scale * self.random.signed());
             rates.iter_mut().for_each(|u| *u = RATE * scale * self.random.signed());
             let orientation = match place {
-                JointPlace::Scalar { .. } | JointPlace::Turn { .. } => continue,
+                JointPlace::Scalar { .. } | JointPlace::Turn { .. } | JointPlace::State { .. } => continue,
                 JointPlace::Orientation { .. } => own,
                 JointPlace::Body { .. } => &mut own[3..],
             };

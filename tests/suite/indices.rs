@@ -11,7 +11,7 @@ fn places<M: JointSpace>(mechanism: &M, joint: &str, coordinate: u16) -> (usize,
     let is_it = |place: &&JointPlace| match **place {
         JointPlace::Scalar { joint, coordinate: c } => usize::from(joint) == wanted && c == coordinate,
         JointPlace::Orientation { joint } => usize::from(joint) == wanted,
-        JointPlace::Body { .. } | JointPlace::Turn { .. } => false,
+        JointPlace::Body { .. } | JointPlace::Turn { .. } | JointPlace::State { .. } => false,
     };
     let before = || layout.places.iter().take_while(|place| !is_it(place));
     let x: usize = before().map(|place| place.n_coordinates()).sum();

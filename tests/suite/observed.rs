@@ -18,7 +18,9 @@ fn random_state<M: JointOutputs<Scalar = f64>>(mechanism: &M, random: &mut Rando
     let mut x = Vec::new();
     for place in layout.places {
         match place {
-            JointPlace::Scalar { .. } | JointPlace::Turn { .. } => x.push(3.0 * random.signed()),
+            JointPlace::Scalar { .. } | JointPlace::Turn { .. } | JointPlace::State { .. } => {
+                x.push(3.0 * random.signed())
+            }
             JointPlace::Orientation { .. } => x.extend(random.unit()),
             JointPlace::Body { .. } => {
                 x.extend(random.vector(1.0));

@@ -103,6 +103,7 @@ pub fn state_at(model: &Model, start: &Start) -> Vec<f64> {
     let angle = |turn: JointCoordinate| start.joints[turn.joint].position[turn.coordinate];
     let mut y = [&start.q[..], &start.v].concat();
     y.extend(model.has_work().then_some(0.0));
+    y.extend(&start.states);
     y.extend(model.turn_references().into_iter().map(angle));
     y
 }

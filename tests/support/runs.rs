@@ -1,7 +1,7 @@
 //! Runs of a mechanism from its model's start, by the loop that the command line uses.
 
 use crate::Engine;
-use gyro_model::{Joint, JointKind, Model};
+use gyro_model::{Joint, JointKind, Model, OutputKind};
 use gyro_runner::motion::MotionBuilder;
 use gyro_runner::{
     Approach, Event, Failure, Input, JointSample, Judgement, Measure, Sample, Settings, Start, Summary,
@@ -52,6 +52,7 @@ pub fn start_of(model: &Model) -> Start {
     let turns = model.turn_references().into_iter();
     Start {
         angles: angles.collect(),
+        states: start.states,
         turn_references: turns.map(|turn| start.joints[turn.joint].position[turn.coordinate]).collect(),
         inputs: Vec::new(),
         controllers: Vec::new(),
@@ -174,6 +175,11 @@ pub fn multipliers(mechanism: &Engine, model: &Model, sample: &Sample) -> Vec<f6
     values.extend(sample.bodies.iter().flat_map(|body| body.velocity));
     values.extend(model.has_work().then_some(sample.work));
     let first = |joint: usize| -> usize { model.joints[..joint].iter().map(n_samples).sum() };
+    let columns = model.outputs.iter().flat_map(|output| {
+        let is_state = matches!(output.kind, OutputKind::State { .. });
+        output.kind.columns().iter().map(move |_| is_state)
+    });
+    values.extend(columns.zip(&sample.outputs).filter(|(is_state, _)| *is_state).map(|(_, value)| *value));
     let turns = model.turn_references().into_iter();
     values.extend(turns.map(|turn| coordinate(sample, first(turn.joint) + turn.coordinate).0));
     let (mut accelerations, mut lambda) = (mechanism.acceleration_buffer(), mechanism.buffers().rows);

@@ -38,6 +38,7 @@ fn a_request_comes_back_bit_by_bit() {
             start: Start {
                 positions: AWKWARD.to_vec(),
                 velocities: AWKWARD[..6].to_vec(),
+                states: vec![AWKWARD[2]],
                 turn_references: vec![AWKWARD[1]],
                 angles: vec![],
                 knots: vec![AWKWARD[3]],

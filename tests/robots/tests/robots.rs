@@ -56,7 +56,9 @@ fn state<M: JointSpace<Scalar = f64>>(mechanism: &M, random: &mut Random) -> M::
     let mut x = Vec::new();
     for place in mechanism.joint_layout().places {
         match place {
-            JointPlace::Scalar { .. } | JointPlace::Turn { .. } => x.push(random.signed()),
+            JointPlace::Scalar { .. } | JointPlace::Turn { .. } | JointPlace::State { .. } => {
+                x.push(random.signed())
+            }
             JointPlace::Orientation { .. } => x.extend(random.unit()),
             JointPlace::Body { .. } => x.extend(random.vector().into_iter().chain(random.unit())),
         }
@@ -124,7 +126,7 @@ fn displaced<M: JointSpace<Scalar = f64>>(mechanism: &M, x: &M::Joints, by: &[f6
         let (along, others) = from.split_at(place.n_rates());
         let n_straight = match place {
             JointPlace::Scalar { .. } => 1,
-            JointPlace::Orientation { .. } | JointPlace::Turn { .. } => 0,
+            JointPlace::Orientation { .. } | JointPlace::Turn { .. } | JointPlace::State { .. } => 0,
             JointPlace::Body { .. } => 3,
         };
         own.iter_mut().zip(&along[..n_straight]).for_each(|(x, by)| *x += by);

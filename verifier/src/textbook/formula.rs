@@ -310,10 +310,15 @@ impl<'t, F: Field> Text<'t, '_, F> {
         let operands = operands.into_iter().map(Term::number).collect::<Option<Vec<_>>>()?;
         match (name, operands.as_slice()) {
             ("sqrt", [x]) => self.root(x),
-            ("hypot", [a, b]) => {
-                let sum =
-                    self.of_both(&self.times(a, a)?, &self.times(b, b)?, |a, b| a + b, |a, b| Some(a + b))?;
-                self.root(&sum)
+            ("hypot", [a, b]) => self.hypot(a, b),
+            ("ramp", [z, width]) => Some(moving((&z.jet + &self.hypot(z, width)?.jet) * &self.scope.half)),
+            ("asin" | "acos", [x]) => {
+                let one = self.constant(Rational::from_integer(1.into()));
+                let square = self.times(x, x)?;
+                let other = self.root(&self.of_both(&one, &square, |a, b| a - b, |a, b| Some(a - b))?)?;
+                let [opposite, beside] =
+                    if name == "asin" { [&x.jet, &other.jet] } else { [&other.jet, &x.jet] };
+                self.scope.atan2(opposite, beside).map(moving)
             }
             _ => {
                 let operands: Vec<_> = operands.into_iter().map(|operand| operand.jet).collect();
@@ -354,8 +359,6 @@ impl<'t, F: Field> Text<'t, '_, F> {
             ("sin", [x]) => scope.sin(x),
             ("cos", [x]) => scope.cos(x),
             ("tan", [x]) => scope.sin(x) * scope.cos(x).reciprocal()?,
-            ("asin", [x]) => scope.atan2(x, &scope.sqrt(&(one - x * x))?)?,
-            ("acos", [x]) => scope.atan2(&scope.sqrt(&(one - x * x))?, x)?,
             ("atan", [x]) => scope.atan2(x, one)?,
             ("atan2", [y, x]) => scope.atan2(y, x)?,
             // tanh · cosh: that tanh is a quotient of exponentials is not known of it here.
@@ -389,9 +392,14 @@ impl<'t, F: Field> Text<'t, '_, F> {
                 let part = scope.when(&part, &capped);
                 y0 + (y1 - y0) * (&part * &part) * (one + one + one - &part - &part)
             }
-            ("ramp", [z, width]) => (z + scope.sqrt(&(z * z + width * width))?) * &scope.half,
             _ => return None,
         })
+    }
+
+    /// √(a² + b²).
+    fn hypot(&self, a: &Value<F>, b: &Value<F>) -> Option<Value<F>> {
+        let squares = [self.times(a, a)?, self.times(b, b)?];
+        self.root(&self.of_both(&squares[0], &squares[1], |a, b| a + b, |a, b| Some(a + b))?)
     }
 
     /// The square root, of a constant to 42 digits.
