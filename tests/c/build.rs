@@ -13,7 +13,7 @@ const PAGES: [&str; 9] = [
     "models/gyroscope-stiff.toml",
     "tests/models/cam.toml",
     "tests/models/curves.toml",
-    "tests/models/states.toml",
+    "tests/models/electric.toml",
     "examples/arm/arm.toml",
 ];
 /// Templates of `gyro new`: a cart with motor and spring, a robot arm with motors; and how they are called here.

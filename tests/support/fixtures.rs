@@ -84,10 +84,12 @@ pub fn in_single_precision() -> Vec<(&'static str, Engine<f32>)> {
     SINGLE.iter().map(|page| (*page, Engine::new(compiled(page)))).collect()
 }
 
-const SINGLE: [&str; 21] = [
+const SINGLE: [&str; 23] = [
     "cam",
+    "curves",
     "cylindrical",
     "driven-gyroscope",
+    "electric",
     "four-bar-revolute",
     "free-body",
     "friction",

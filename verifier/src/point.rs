@@ -12,7 +12,8 @@ pub struct Point<F: Field> {
     /// Time.
     pub t: F,
     /// State: 7 positions (r, p) of each body that has coordinates, with |p| = 1 unless said otherwise; 6 velocities
-    /// (s, w') of each; the work if [`Model::has_work`]; [`Model::states`]; one turn reference for each of [`Model::turn_references`].
+    /// (s, w') of each; the work if [`Model::has_work`]; [`Model::states`]; one turn reference for each of
+    /// [`Model::turn_references`].
     pub state: Vec<F>,
     /// Values of [`Model::parameters`].
     pub parameters: Vec<F>,

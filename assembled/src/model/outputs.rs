@@ -5,9 +5,8 @@ use crate::model::bushing::Bushing;
 use crate::model::joint::Joint;
 use crate::model::measure::Coordinate;
 use crate::model::path::Path;
-use crate::model::place::{Places, vector};
+use crate::model::place::{Places, first_state, vector};
 use crate::model::spot::Spot;
-use crate::model::states::first_state;
 use crate::number::Number;
 use gyro_model::{BodyFrame, ForceKind, Model, OutputKind, RowOwner};
 

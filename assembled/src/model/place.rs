@@ -55,6 +55,11 @@ impl<T: Number> Places<T> {
     }
 }
 
+/// Where the model file's own states begin in the state; turn references follow.
+pub(crate) fn first_state(model: &Model) -> usize {
+    13 * model.coordinate_bodies().len() + usize::from(model.has_work())
+}
+
 /// A body that stays where the model file puts it.
 pub(crate) fn resting<T: Number>(model: &Model, body: usize) -> Motion<T> {
     let body = &model.bodies[body];

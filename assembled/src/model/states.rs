@@ -6,12 +6,6 @@ use crate::model::lowered::Lowered;
 use crate::model::measure::Coordinate;
 use crate::model::place::Moment;
 use crate::number::Number;
-use gyro_model::Model;
-
-/// Where the model file's own states begin in the state; turn references follow.
-pub(crate) fn first_state(model: &Model) -> usize {
-    13 * model.coordinate_bodies().len() + usize::from(model.has_work())
-}
 
 impl<T: Number> Lowered<T> {
     /// Writes the rates of the states, and of the turn references: those of their angles.

@@ -7,8 +7,8 @@ use gyro_model::{Attachment, CoordinateKind, Model};
 /// A place that has a name; of several numbers the first.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Index {
-    /// Of which kind it is: `joint` and `joint_rate`, `body` and `body_rate`, `state`, `input`, `parameter`, `output`. Names are
-    /// unique among those of a kind and a coordinate.
+    /// Of which kind it is: `joint` and `joint_rate`, `body` and `body_rate`, `state`, `input`, `parameter`, `output`.
+    /// Names are unique among those of a kind and a coordinate.
     pub kind: &'static str,
     /// Which coordinate of a joint that has several.
     pub coordinate: Option<&'static str>,

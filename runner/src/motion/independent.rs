@@ -157,7 +157,8 @@ impl Tangent {
         let rates = Rate::all(mechanism, &linear.state);
         let n_coordinates = layout.n_coordinates();
         let is_state = |&at: &usize| {
-            matches!(linear.elements[at], Element::Position { place: JointPlace::State { .. }, .. })
+            let element = linear.elements.get(at);
+            matches!(element, Some(Element::Position { place: JointPlace::State { .. }, .. }))
         };
         let states = (0..n_coordinates).filter(is_state).collect();
         let tangent = Self { n_coordinates, states, rates, independent: Vec::new(), columns: Vec::new() };

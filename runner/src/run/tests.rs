@@ -71,7 +71,7 @@ fn inputs_are_set_before_every_step_and_every_sample() {
 fn turn_references_are_the_last_elements_of_the_state() {
     let start = Start { turn_references: vec![7.0], ..Spinner::default().initial() };
     let failure = state(&Spinner::<f64>::default(), &start).unwrap_err().to_string();
-    assert!(failure.contains("1 turn references") && failure.contains("13 elements"), "{failure}");
+    assert!(failure.contains("1 states and turn references") && failure.contains("13 elements"), "{failure}");
 }
 
 #[test]

@@ -41,7 +41,7 @@ fn the_text_is_what_was_proved() {
         ("models/driven-gyroscope.toml", Functions::of_solvers(), Precision::F32),
         ("tests/models/cam.toml", Functions::of_solvers(), Precision::F64),
         ("tests/models/curves.toml", Functions::all(), Precision::F64),
-        ("tests/models/states.toml", Functions::all(), Precision::F64),
+        ("tests/models/electric.toml", Functions::all(), Precision::F64),
         ("tests/models/stops.toml", Functions::of_solvers(), Precision::F64),
         ("examples/arm/arm.toml", Functions::all(), Precision::F64),
         // Loops over tables of constants.
