@@ -75,9 +75,10 @@
 //!   (eq. (14)).
 //! * The state is one flat buffer: seven positions `(r, p)` for each body, then six velocities `(s, w')` for each body;
 //!   then, in mechanisms with non-conservative forces or drivers only, the work that these have done (model files leave
-//!   it out by `count_work = false`); then the model file's own states (`[[state]]`); then one *turn reference* for each
-//!   joint angle on whose continuous value something acts (a spring, a stop, a coupler, a driver). Solvers integrate what follows the velocities with the
-//!   rest; corrections leave the work alone and set turn references to their angles.
+//!   it out by `count_work = false`); then the states that the model file has of its own (`[[state]]`); then one *turn
+//!   reference* for each joint angle on whose continuous value something acts (a spring, a stop, a coupler, a driver).
+//!   Solvers integrate what follows the velocities with the rest; corrections leave work and states alone and set turn
+//!   references to their angles.
 //! * Only bodies that move freely have coordinates: those held fixed or moved by prescription are folded into the
 //!   formulas, the latter as functions of time.
 //! * The constraint rows (*joint rows* for short) are those of constrained bodies, joints, couplers and drivers, in the

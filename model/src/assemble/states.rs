@@ -50,7 +50,11 @@ pub(super) fn at(model: &Model, start: &Start) -> Result<Vec<f64>, AssemblyError
         // A step that makes the rates larger is halved: what is curved is approached all the same.
         let mut part = 1.0;
         let mut next = moved(part);
-        while part > SMALL && !(residual(&next).norm() <= rates.norm()) {
+        let is_worse = |next: &[f64]| {
+            let size = residual(next).norm();
+            size.is_nan() || size > rates.norm()
+        };
+        while part > SMALL && is_worse(&next) {
             part *= 0.5;
             next = moved(part);
         }

@@ -149,8 +149,8 @@ impl<F: Field> Evaluation<'_, F> {
 }
 
 impl Evaluation<'_, f64> {
-    /// Whether all formulas of forces, states and outputs have finite values and derivatives here, and bushings readings
-    /// that formulas and outputs see.
+    /// Whether all formulas of forces, states and outputs have finite values and derivatives here, and bushings those
+    /// readings that formulas and outputs see.
     pub fn has_smooth_formulas(&self) -> bool {
         let model = self.textbook.model;
         let are_clear = model.forces.iter().enumerate().all(|(index, force)| match &force.kind {

@@ -282,7 +282,7 @@ mechanism!(
 mechanism!(a_loop, four_bar::FourBar<f64>, "models/four-bar.toml", NONE, NONE, implicit);
 mechanism!(a_loop_in_f32, four_bar::FourBar<f32>, "models/four-bar.toml", NONE, NONE, implicit);
 mechanism!(tables, cam::Cam<f64>, "tests/models/cam.toml", NONE, NONE);
-mechanism!(electric, electric::Electric<f64>, "tests/models/electric.toml", NONE, NONE, implicit);
+mechanism!(electric, electric::Electric<f64>, "tests/models/electric.toml", [1.75], [0.4], implicit);
 mechanism!(curves, curves::Curves<f64>, "tests/models/curves.toml", NONE, NONE, implicit);
 mechanism!(curves_in_f32, curves::Curves<f32>, "tests/models/curves.toml", NONE, NONE, implicit);
 mechanism!(tables_in_f32, cam::Cam<f32>, "tests/models/cam.toml", NONE, NONE);
