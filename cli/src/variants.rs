@@ -1,6 +1,8 @@
 //! A model without one of its elements, or with more of its numbers tunable: what an element costs is the difference.
 
-use gyro_model::{Joint, JointEnd, Model, Number, Parameter, Support, analyse};
+use gyro_model::{
+    Formula, Joint, JointEnd, Model, Number, Operation, OutputKind, Parameter, Seen, Support, analyse,
+};
 
 /// A model with one thing changed.
 #[derive(Debug)]
@@ -50,13 +52,25 @@ impl Changes<'_> {
             });
         }
         for (index, force) in model.forces.iter().enumerate() {
+            let told =
+                model.outputs.iter().enumerate().filter(|(_, output)| of_force(&output.kind) == Some(index));
+            let told: Vec<usize> = told.map(|(output, _)| output).collect();
+            if told.iter().any(|output| is_seen(model, *output)) {
+                continue;
+            }
             self.add(format!("without force `{}`", force.name), |model| {
+                told.into_iter().for_each(|output| model.outputs[output].kind = nothing());
                 model.forces.remove(index);
+                let others = model.outputs.iter_mut().filter_map(|output| of_force_mut(&mut output.kind));
+                others.filter(|force| **force > index).for_each(|force| *force -= 1);
             });
         }
         for (index, output) in model.outputs.iter().enumerate() {
+            if is_seen(model, index) || matches!(output.kind, OutputKind::State { .. }) {
+                continue;
+            }
             self.add(format!("without output `{}`", output.name), |model| {
-                model.outputs.remove(index);
+                model.outputs[index].kind = nothing();
             });
         }
     }
@@ -109,6 +123,32 @@ impl Changes<'_> {
             free(geometry(&mut model.joints), &mut model.parameters);
         });
     }
+}
+
+/// Whether a force, a state or another output depends on an output: such a model cannot be without it.
+fn is_seen(model: &Model, output: usize) -> bool {
+    let sees = |seen: Seen| matches!(seen, Seen::Output { output: of, .. } if of == output);
+    model.laws().flat_map(Formula::sees).any(sees)
+}
+
+/// The force that an output tells.
+fn of_force(kind: &OutputKind) -> Option<usize> {
+    of_force_mut(&mut kind.clone()).copied()
+}
+
+fn of_force_mut(kind: &mut OutputKind) -> Option<&mut usize> {
+    match kind {
+        OutputKind::Spring { force } | OutputKind::Link { force } | OutputKind::Bushing { force } => {
+            Some(force)
+        }
+        _ => None,
+    }
+}
+
+/// An output that takes no operation, in the place of one that others count from.
+fn nothing() -> OutputKind {
+    let operations = vec![Operation::Number(Number::integer(0))];
+    OutputKind::Formula(Formula { text: "0".to_owned(), operations })
 }
 
 fn zeros() -> [Number; 3] {

@@ -30,3 +30,19 @@ fn a_linkage_without_an_arm_cannot_be_assembled() {
     let model = crate::scene::read(&files::root().join("models/four-bar.toml")).unwrap();
     assert!(variants(&model).iter().any(|variant| variant.model.is_err()));
 }
+
+/// Every variant of models whose formulas see outputs and states is generated.
+#[test]
+fn what_formulas_see_stays() {
+    let functions = gyro_codegen::Functions::named(["joint"]).unwrap();
+    for page in ["dc_motor", "crane", "bushed_four_bar"] {
+        let path = files::root().join(format!("examples/laws/{page}.toml"));
+        let variants = variants(&crate::scene::read(&path).unwrap());
+        assert!(variants.iter().any(|variant| variant.what.starts_with("without force")), "{page}");
+        for Variant { what, model } in variants {
+            let Ok(model) = model else { continue };
+            let scheduled = gyro_codegen::schedule(&model, &functions, gyro_codegen::Effort::Quick);
+            assert!(scheduled.is_ok() || model.assemble().is_err(), "{page} {what}");
+        }
+    }
+}

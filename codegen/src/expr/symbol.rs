@@ -21,8 +21,6 @@ pub enum Symbol {
     ParameterSetup(usize),
     /// A number that the caller sets at every step.
     Input(usize),
-    /// A state of one's own, by its place in `Model::states`.
-    State(usize),
     /// The turn reference of an angle, by its place in `Model::turn_references`: part of the state, and constant in all
     /// derivatives (the angle that it serves does not depend on it).
     Turn(usize),
@@ -61,4 +59,6 @@ pub enum Symbol {
     Entry { array: usize, row: usize, column: usize },
     /// What the body of a loop reads, by its place among that.
     Local(usize),
+    /// A state of one's own, by its place in `Model::states`.
+    State(usize),
 }
