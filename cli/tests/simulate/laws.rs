@@ -78,7 +78,7 @@ pub(crate) fn end(run: &Value) -> [f64; 3] {
 
 #[test]
 fn motors_by_formula_move_as_their_equation_does() {
-    let laws: [(&str, Law); 8] = [
+    let laws: [(&str, Law); 9] = [
         ("-k*turn^3 - 0.2*turn rate*abs(turn rate) + 0.5*sin(3*t) - 0.1*u", |x, v, t| {
             -3.0 * x.powi(3) - 0.2 * v * v.abs() + 0.5 * (3.0 * t).sin() - 0.07
         }),
@@ -98,6 +98,10 @@ fn motors_by_formula_move_as_their_equation_does() {
             if x > 0.6 { -100.0 * (x - 0.6).powf(1.5) } else { 0.0 }
         }),
         ("min(turn, 0.5) + max(turn rate, 1.2)*0", |x, _, _| x.min(0.5)),
+        // What is rational decides, of however many digits.
+        ("max(-turn, ramp(0.3, 0.19)) - if(pi^3/4 < 0.2, 2, floor(pi^5)) + asin(0.3)*turn", |x, _, _| {
+            (-x).max(0.5 * (0.3 + 0.3_f64.hypot(0.19))) - 306.0 + 0.3_f64.asin() * x
+        }),
     ];
     for (text, law) in laws {
         let expected = integrated_one([0.4, 1.5], 0.8, |x, v, t| law(x, v, t) / 0.5);

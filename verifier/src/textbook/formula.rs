@@ -1,10 +1,14 @@
 //! Formulas of the model file, read anew from their text: the grammar and the meaning of each function are typed here a
 //! second time.
 
+mod constants;
+
 use super::jet::Jet;
 use super::scope::Scope;
 use crate::field::Field;
+use constants::{UNITS, of_constants};
 use gyro_model::{Beyond, Curve, Model, Number, Rational, Seen, column, parse_decimal, pi, root};
+use num_traits::Signed;
 
 /// What a formula may see of the mechanism.
 pub(super) type See<'s, F> = &'s dyn Fn(Seen) -> Option<Jet<F>>;
@@ -33,22 +37,11 @@ enum Term<F> {
 /// A condition.
 enum Condition<F> {
     /// The number is greater than zero.
-    Positive(Jet<F>),
+    Positive(Value<F>),
     Not(Box<Condition<F>>),
     And(Box<Condition<F>>, Box<Condition<F>>),
     Or(Box<Condition<F>>, Box<Condition<F>>),
 }
-
-/// Units of angle and of its rate, in rad and rad/s: so many half turns, or radians.
-const UNITS: [(&str, (i64, i64), bool); 7] = [
-    ("rad/s", (1, 1), false),
-    ("deg/s", (1, 180), true),
-    ("rev/s", (2, 1), true),
-    ("rpm", (1, 30), true),
-    ("rad", (1, 1), false),
-    ("deg", (1, 180), true),
-    ("rev", (2, 1), true),
-];
 
 /// The value of a formula; `None` where it is not defined.
 pub(super) fn value<F: Field>(
@@ -109,16 +102,19 @@ impl<'t, F: Field> Text<'t, '_, F> {
             Term::Number(a) => a,
             condition => return Some(condition),
         };
-        let less = |a: Value<F>, b: Value<F>| Condition::Positive(b.jet - a.jet);
         let not = |condition| Condition::Not(Box::new(condition));
         let condition = if self.take(">=") {
-            not(less(a, self.sum()?.number()?))
+            let b = self.sum()?.number()?;
+            not(self.less(&a, &b)?)
         } else if self.take("<=") {
-            not(less(self.sum()?.number()?, a))
+            let b = self.sum()?.number()?;
+            not(self.less(&b, &a)?)
         } else if self.take(">") {
-            less(self.sum()?.number()?, a)
+            let b = self.sum()?.number()?;
+            self.less(&b, &a)?
         } else if self.take("<") {
-            less(a, self.sum()?.number()?)
+            let b = self.sum()?.number()?;
+            self.less(&a, &b)?
         } else {
             return Some(Term::Number(a));
         };
@@ -321,6 +317,10 @@ impl<'t, F: Field> Text<'t, '_, F> {
                 self.scope.atan2(opposite, beside).map(moving)
             }
             _ => {
+                let exact: Option<Vec<_>> = operands.iter().map(|operand| operand.exact.clone()).collect();
+                if let Some(value) = exact.and_then(|exact| of_constants(name, &exact)) {
+                    return Some(self.constant(value));
+                }
                 let operands: Vec<_> = operands.into_iter().map(|operand| operand.jet).collect();
                 match (self.model.curve(name), operands.as_slice()) {
                     (Some(curve), [x]) => self.curve(curve, x).map(moving),
@@ -341,9 +341,22 @@ impl<'t, F: Field> Text<'t, '_, F> {
         Some(self.scope.when(&(&self.scope.one + self.scope.sqrt(&within)?), &value))
     }
 
+    fn less(&self, a: &Value<F>, b: &Value<F>) -> Option<Condition<F>> {
+        self.of_both(b, a, |b, a| b - a, |b, a| Some(b - a)).map(Condition::Positive)
+    }
+
     fn choose(&self, condition: &Condition<F>, a: &Jet<F>, b: &Jet<F>) -> Jet<F> {
         match condition {
-            Condition::Positive(margin) => self.scope.when(margin, a) + self.scope.unless(margin, b),
+            Condition::Positive(Value { exact: Some(margin), .. }) => {
+                if margin.is_positive() {
+                    a.clone()
+                } else {
+                    b.clone()
+                }
+            }
+            Condition::Positive(margin) => {
+                self.scope.when(&margin.jet, a) + self.scope.unless(&margin.jet, b)
+            }
             Condition::Not(inner) => self.choose(inner, b, a),
             Condition::And(p, q) => self.choose(p, &self.choose(q, a, b), b),
             Condition::Or(p, q) => self.choose(p, a, &self.choose(q, a, b)),
