@@ -29,7 +29,7 @@ pub(crate) const RUNS: [&[&str]; 4] = [
 type Law = fn(f64, f64, f64) -> f64;
 
 /// By Kutta's method in steps of 1e-5 s, of positions with their rates.
-fn integrated<const N: usize>(
+pub(crate) fn integrated<const N: usize>(
     mut y: [[f64; N]; 2],
     t_end: f64,
     acceleration: impl Fn([f64; N], [f64; N], f64) -> [f64; N],

@@ -11,6 +11,7 @@ mod curves;
 mod defaults;
 mod events;
 mod followed;
+mod gravity;
 mod inputs;
 mod interrupted;
 mod kinks;

@@ -25,8 +25,9 @@ fn read(text: &str) -> Result<Model, Diagnostics> {
 }
 
 /// All tables of keys that the document shows.
-const TABLES: [&Table; 18] = [
+const TABLES: [&Table; 19] = [
     &keys::FILE,
+    &keys::ATTRACTION,
     &keys::SIMULATION,
     &keys::BODY,
     &keys::DRIVEN,
