@@ -328,7 +328,8 @@ impl fmt::Display for AssemblyError {
             }
             Self::Attracted { name, .. } => write!(
                 f,
-                "the mass centre of body `{name}` starts at the centre of gravity, whose attraction has no direction there"
+                "the mass centre of body `{name}` starts where the central body of gravity is: its attraction has no \
+                 direction there"
             ),
             Self::OverConstrained { closing, .. } => write!(
                 f,

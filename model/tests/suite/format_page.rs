@@ -61,7 +61,7 @@ fn markdown(head: &[&str], rows: &[Vec<String>]) -> String {
 
 fn unit(key: &Key) -> String {
     let unit = key.unit().unwrap_or_default();
-    unit.replace('.', "·").replace("s2", "s²").replace("m2", "m²")
+    unit.replace('.', "·").replace("s2", "s²").replace("m2", "m²").replace("m3", "m³")
 }
 
 /// A default: code where the model file would have it so, words otherwise.
