@@ -168,8 +168,9 @@ impl<F: Field> Evaluation<'_, F> {
             return Some(self.scope.vector(&model.gravity));
         };
         let d = self.scope.vector(centre) - place.clone();
-        let square = d.dot(&d);
-        let cube = self.scope.sqrt(&square)? * &square;
+        // A product of roots holds for any number in the place of the root.
+        let distance = self.scope.sqrt(&d.dot(&d))?;
+        let cube = &distance * &distance * &distance;
         Some(d.times(&(self.scope.number(mu) * cube.reciprocal()?)))
     }
 
