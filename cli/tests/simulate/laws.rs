@@ -15,7 +15,7 @@ pub(crate) const ROTOR: &str = "format = 1\nname = \"rotor\"\n[parameters]\nk = 
     second = { body = \"wheel\" }\nangle = 0.4\nrate = 1.5\n";
 
 /// A slider of 2 kg along x without weight, of a body that is 0.3 m above the rail.
-const SLIDER: &str = "format = 1\nname = \"slider\"\n[[body]]\nname = \"ground\"\nfixed = true\n[[body]]\nname = \"cart\"\n\
+pub(crate) const SLIDER: &str = "format = 1\nname = \"slider\"\n[[body]]\nname = \"ground\"\nfixed = true\n[[body]]\nname = \"cart\"\n\
     mass = 2\ninertia = [1, 1, 1]\n[[joint]]\nname = \"rail\"\nkind = \"prismatic\"\naxis = [1, 0, 0]\nzero = [0, 1, 0]\n\
     first = { body = \"ground\" }\nsecond = { body = \"cart\" }\ndisplacement = 0.5\nrate = -0.2\n";
 

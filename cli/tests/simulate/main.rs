@@ -16,6 +16,7 @@ mod inputs;
 mod interrupted;
 mod kinks;
 mod laws;
+mod lengths;
 mod loads;
 mod orientation;
 mod plants;

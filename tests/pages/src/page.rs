@@ -128,7 +128,7 @@ impl Page {
             early: Vec::new(),
             n_rough: 0,
         };
-        page.attract(&mut Dice::new(seed.rotate_left(29)));
+        page.attract(&mut Dice::new(seed.rotate_left(11)));
         page
     }
 
