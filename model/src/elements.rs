@@ -74,6 +74,17 @@ pub struct Force {
     pub kind: ForceKind,
 }
 
+/// A ready element, which stands for forces, states, outputs and formulas of the model.
+#[derive(Clone, Debug)]
+pub struct Element {
+    /// Name, an identifier, with which the names of its parts begin.
+    pub name: String,
+    /// The word of its kind.
+    pub kind: &'static str,
+    /// What it was told, by its keys: of a vector each number.
+    pub numbers: Vec<(&'static str, Number)>,
+}
+
 /// The kinds of force. A force `F(x, ẋ)` *along a joint coordinate* x acts on the second body and as `−F` on the first:
 /// of an angle it is the torque `F h_j` on the second body and `−F h_i` on the first, each body's own joint axis
 /// (universal: both about `h_i` for the first angle and about `h_j` for the second); of a displacement along u (h_i,
