@@ -388,7 +388,8 @@ pub enum OutputKind {
         /// Index into [`crate::Model::forces`], of a spring.
         force: usize,
     },
-    /// Force with which a link pushes its ends apart, its spring's and its damper's (N), and its length (m).
+    /// Force with which a link pushes its ends apart, its spring's and its damper's (N), its length (m) and
+    /// the rate of that (m/s).
     Link {
         /// Index into [`crate::Model::forces`], of a link.
         force: usize,
@@ -477,7 +478,7 @@ impl OutputKind {
             ],
             Self::Driver { .. } | Self::Coupler { .. } => &[("", "N*m or N")],
             Self::Spring { .. } => &[("force", "N*m or N"), ("deflection", "rad or m")],
-            Self::Link { .. } => &[("force", "N"), ("length", "m")],
+            Self::Link { .. } => &[("force", "N"), ("length", "m"), ("rate", "m/s")],
             Self::Bushing { .. } => &[
                 ("x", "m"),
                 ("y", "m"),

@@ -142,6 +142,62 @@ fn a_wire_pulls_and_never_pushes() {
     }
 }
 
+/// Over two pulleys at 0.4 m and 0.8 m, from a cart to another that hangs: the pull is along both ends.
+#[test]
+fn a_rope_pulls_alike_at_both_ends() {
+    let page = "format = 1\nname = \"tackle\"\ngravity = [0, -9.81, 0]\n[[body]]\nname = \"ground\"\nfixed = true\n[[body]]\n\
+        name = \"cart\"\nmass = 3\ninertia = [1, 1, 1]\n[[body]]\nname = \"bob\"\nmass = 1\ninertia = [1, 1, 1]\n[[joint]]\n\
+        name = \"rail\"\nkind = \"prismatic\"\naxis = [1, 0, 0]\nzero = [0, 1, 0]\nfirst = { body = \"ground\" }\n\
+        second = { body = \"cart\" }\ndisplacement = -0.3\n[[joint]]\nname = \"fall\"\nkind = \"prismatic\"\n\
+        axis = [0, -1, 0]\nzero = [1, 0, 0]\nfirst = { body = \"ground\", point = [0.8, 0, 0] }\n\
+        second = { body = \"bob\" }\ndisplacement = 0.1\n[[element]]\nname = \"rope\"\nkind = \"rope\"\nstiffness = 2e3\n\
+        damping = 15\nfree_length = 1.65\npoints = [{ body = \"cart\" }, { body = \"ground\", point = [0.4, 0.5, 0] },\n\
+        { body = \"ground\", point = [0.8, 0.2, 0] }, { body = \"bob\" }]\n";
+    let pull = |x: f64, y: f64, vx: f64, vy: f64| {
+        let near = (x - 0.4).hypot(0.5);
+        let over = near + 0.5 + 0.2 + y - 1.65;
+        let rate = (x - 0.4) * vx / near + vy;
+        (if over > 0.0 { (2e3 * over + 15.0 * rate).max(0.0) } else { 0.0 }, (0.4 - x) / near)
+    };
+    let expected = integrated([-0.3, 0.1, 0.0, 0.0], 0.6, |[x, y, vx, vy], _| {
+        let (pull, along) = pull(x, y, vx, vy);
+        [vx, vy, pull * along / 3.0, 9.81 - pull]
+    });
+    for options in RUNS {
+        let run = run(page, options, "0.6");
+        let ([x, vx], [y, vy]) = (joint(&run, "rail"), joint(&run, "fall"));
+        near(&[x, y, vx, vy], &expected, 1e-7, &format!("{options:?}"));
+        let parts = ["rope_1", "rope_2", "rope_3"].map(|name| number(&run["outputs"][name][0]));
+        near(&parts, &[-pull(x, y, vx, vy).0; 3], 1e-6, &format!("{options:?}"));
+    }
+}
+
+/// A rope that does not give at all is a coupler: over three pulleys, the middle one on the load, its length stays.
+#[test]
+fn a_rope_over_three_pulleys_keeps_its_length() {
+    let slide = |name: &str, at: f64, start: f64| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nmass = 2\ninertia = [1, 1, 1]\n[[joint]]\nname = \"{name}_down\"\n\
+             kind = \"prismatic\"\naxis = [0, 0, -1]\nzero = [1, 0, 0]\nfirst = {{ body = \"ground\", point = [{at}, 0, 0] }}\n\
+             second = {{ body = \"{name}\" }}\ndisplacement = {start}\n"
+        )
+    };
+    let page = format!(
+        "format = 1\nname = \"pulleys\"\ngravity = [0, 0, -9.81]\n[[body]]\nname = \"ground\"\nfixed = true\n{}{}{}\
+         [[coupler]]\nname = \"rope\"\nsecond = {{ joint = \"right_down\" }}\n\
+         formula = \"3 - left_down - 2*hypot(load_down, 0.2)\"\n[[output]]\nname = \"length\"\nkind = \"formula\"\n\
+         of = \"left_down + right_down + 2*hypot(load_down, 0.2)\"\n",
+        slide("left", -0.2, 0.8),
+        slide("load", 0.0, 0.6),
+        slide("right", 0.2, 3.0 - 0.8 - 2.0 * 0.6_f64.hypot(0.2)).replace("mass = 2", "mass = 1.8"),
+    );
+    for options in RUNS {
+        let run = run(&page, options, "0.4");
+        near(&[output(&run, "length")], &[3.0], 1e-14, &format!("{options:?}"));
+        assert!((number(&run["joints"]["load_down"]["position"]) - 0.6).abs() > 1e-3);
+    }
+}
+
 /// Two rotors on a shaft with a gear: `θ̈₂ = −(k z + d ż)/J₂`, `θ̈₁ = r (k z + d ż)/J₁` with `z = θ₂ − r θ₁ − z₀`.
 #[test]
 fn a_shaft_twists() {

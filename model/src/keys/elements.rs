@@ -2,7 +2,7 @@
 
 use super::{
     COUPLER_END, FORCE_END, KIND, Key, ON_COORDINATE, ON_JOINT, POINT, Table, kind, name, number,
-    orientation, reference, strength, strengths, table, vector, word,
+    orientation, reference, strength, strengths, table, tables_of, vector, word,
 };
 
 const SIDES: &[(&str, &str)] = &[("lower", ""), ("upper", "")];
@@ -68,19 +68,19 @@ pub static ELEMENT: Table = Table::new(
     ),
     kind(
         "propeller",
-        "`thrust` · n · |n| along `axis`, and the torque −`torque` · n · |n| about it, on a body, n being the speed",
+        "`thrust` · n · abs(n) along `axis`, and the torque −`torque` · n · abs(n) about it, on a body, n being the speed",
         &[
             reference("body", "name of the body"),
             POINT,
             vector("axis", "", "in the body's frame, of any length").or("[0, 0, 1]"),
             strength("speed", "rad/s", "an input, or the rate of a joint").required(),
-            number("thrust", "N.s2/rad2", "negative for one that pushes when it turns backwards").required(),
-            number("torque", "N.m.s2/rad2", "").not_negative(LOSES).or("0"),
+            number("thrust", "N.s2", "negative for one that pushes when it turns backwards").required(),
+            number("torque", "N.m.s2", "").not_negative(LOSES).or("0"),
         ],
     ),
     kind(
         "drag",
-        "−½ `density` · `area` · `coefficient` · |v| v at a point of a body, v its velocity less that of the wind; \
+        "−½ `density` · `area` · `coefficient` · abs(v) v at a point of a body, v its velocity less that of the wind; \
          output `NAME_air`",
         &[
             reference("body", "name of the body"),
@@ -96,6 +96,17 @@ pub static ELEMENT: Table = Table::new(
         "pulls with `stiffness` · (l − `free_length`) + `damping` · l̇ where two points are further apart than its \
          free length, and never pushes",
         &[FIRST, SECOND, STIFFNESS, DAMPING, LENGTH],
+    ),
+    kind(
+        "rope",
+        "a wire through several points, over pulleys without friction, which pulls alike at all of them by its whole \
+         length; links `NAME_1`, `NAME_2` and so on from each point to the next",
+        &[
+            tables_of(&FORCE_END, "points", "at least two tables of `body` and `point`").required(),
+            STIFFNESS,
+            DAMPING,
+            LENGTH,
+        ],
     ),
     kind(
         "shaft",
@@ -152,7 +163,7 @@ pub static ELEMENT: Table = Table::new(
     ),
     kind(
         "lugre",
-        "friction by bristles: ż = ẋ − `bristle_stiffness` · |ẋ| / g · z with g the level of Stribeck, and the force \
+        "friction by bristles: ż = ẋ − `bristle_stiffness` · abs(ẋ) / g · z with g the level of Stribeck, and the force \
          −`bristle_stiffness` · z − `bristle_damping` · ż − `viscous` · ẋ; state `NAME_bristles`",
         &[
             ON_JOINT,

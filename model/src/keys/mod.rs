@@ -297,6 +297,10 @@ const fn table(name: &'static str, table: &'static Table, meaning: &'static str)
     Key::new(name, Value::Table(table), meaning)
 }
 
+const fn tables_of(table: &'static Table, name: &'static str, meaning: &'static str) -> Key {
+    Key::new(name, Value::Tables(table), meaning)
+}
+
 const fn tables(table: &'static Table, meaning: &'static str) -> Key {
     Key::new(table.name, Value::Tables(table), meaning).or("none")
 }

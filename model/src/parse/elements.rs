@@ -36,6 +36,12 @@ fn element(reader: &mut Reader<'_>, mut section: Section<'_>, name: String) -> O
                 let given = section.find(reader, key.name).and_then(|item| vector::<3>(reader, item));
                 numbers.extend(given.into_iter().flatten().map(|number| (key.name, number)));
             }
+            Value::Tables(_) => {
+                let Some(item) = section.find(reader, key.name) else { continue };
+                if item.tables(reader).len() < 2 {
+                    item.wrong_type(reader, "an array of at least two tables");
+                }
+            }
             // Read where they stand in what the element stands for.
             _ => _ = section.find(reader, key.name),
         }

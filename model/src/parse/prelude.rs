@@ -32,7 +32,8 @@ pub(super) fn expanded<'t>(file: &Table<'t>) -> (Table<'t>, Vec<Range<usize>>) {
                 .or_insert_with(|| Spanned::new(place, DeValue::Array(DeArray::new())));
             let DeValue::Array(all) = all.get_mut() else { continue };
             let parts = parts.get_ref().as_array().into_iter().flat_map(|parts| parts.iter());
-            parts.filter_map(|part| element.part(part.get_ref().as_table()?)).for_each(|part| all.push(part));
+            let parts = parts.filter_map(|part| part.get_ref().as_table());
+            parts.flat_map(|part| element.parts(part)).for_each(|part| all.push(part));
         }
     }
     (whole, places)
@@ -41,11 +42,18 @@ pub(super) fn expanded<'t>(file: &Table<'t>) -> (Table<'t>, Vec<Range<usize>>) {
 /// The key of the prelude that says which key, or which word of one, an element must have for a part to be there.
 const GIVEN: &str = "given";
 
+/// The key of the prelude that says of which list each two neighbours have a part.
+const EACH: &str = "each";
+
+/// An element that is being read.
+#[derive(Clone)]
 struct Expansion<'a, 't> {
     file: &'a Table<'t>,
     table: &'a Table<'t>,
     kind: &'static Kind,
     name: &'a str,
+    /// Two neighbours in a list of it, with how many pairs are before them.
+    pair: Option<(usize, &'a [Spanned<DeValue<'t>>])>,
     /// Where its name is: the place of what the model file does not have as it stands.
     place: Range<usize>,
 }
@@ -54,28 +62,36 @@ impl<'a, 't> Expansion<'a, 't> {
     fn new(file: &'a Table<'t>, table: &'a Table<'t>) -> Option<Self> {
         let kind = ELEMENT.kind(table.get("kind")?.get_ref().as_str()?)?;
         let name = table.get("name")?;
-        let expansion = Self { file, table, kind, name: name.get_ref().as_str()?, place: name.span() };
+        let expansion =
+            Self { file, table, kind, name: name.get_ref().as_str()?, place: name.span(), pair: None };
         let joint = table.get("joint").and_then(|joint| joint.get_ref().as_str());
         let is_whole = kind.keys.iter().all(|key| !key.is_required || table.contains_key(key.name))
             && joint.is_none_or(|joint| expansion.joint(joint).is_some());
         is_whole.then_some(expansion)
     }
 
-    /// A part of it, if it has it.
-    fn part(&self, part: &Table<'_>) -> Option<Spanned<DeValue<'t>>> {
-        if let Some(given) = part.get(GIVEN).and_then(|given| given.get_ref().as_str()) {
+    /// What it has of a part: none, one, or one for each two neighbours in a list.
+    fn parts(&self, part: &Table<'_>) -> Vec<Spanned<DeValue<'t>>> {
+        let text = |key: &str| part.get(key).and_then(|value| value.get_ref().as_str());
+        let has = |given: &str| {
             let (key, word) = given.split_once('=').map_or((given, None), |(key, word)| (key, Some(word)));
-            let value = self.table.get(key)?;
-            if word.is_some_and(|word| value.get_ref().as_str() != Some(word)) {
-                return None;
-            }
+            let value = self.table.get(key);
+            value.is_some_and(|value| word.is_none() || value.get_ref().as_str() == word)
+        };
+        if text(GIVEN).is_some_and(|given| !has(given)) {
+            return Vec::new();
         }
-        Some(self.filled_table(part))
+        let Some(list) = text(EACH) else { return vec![self.filled_table(part)] };
+        let elements = self.table.get(list).and_then(|list| list.get_ref().as_array());
+        let pairs = elements.into_iter().flat_map(|elements| elements.windows(2)).enumerate();
+        pairs
+            .map(|(before, pair)| Self { pair: Some((before, pair)), ..self.clone() }.filled_table(part))
+            .collect()
     }
 
     fn filled_table(&self, table: &Table<'_>) -> Spanned<DeValue<'t>> {
         let mut filled = DeTable::new();
-        for (key, value) in table.iter().filter(|(key, _)| key.get_ref() != GIVEN) {
+        for (key, value) in table.iter().filter(|(key, _)| ![GIVEN, EACH].contains(&key.get_ref().as_ref())) {
             if let Some(value) = self.filled(value.get_ref()) {
                 filled.insert(self.here(DeString::from(key.get_ref().to_string())), value);
             }
@@ -129,6 +145,10 @@ impl<'a, 't> Expansion<'a, 't> {
         match path {
             "name" => return Some(self.here(DeValue::String(self.name.to_owned().into()))),
             "on" => return self.coordinate(self.table),
+            "from" | "to" => return self.pair.map(|(_, pair)| pair[usize::from(path == "to")].clone()),
+            "k" => return self.pair.map(|(before, _)| self.number(before + 1)),
+            "before" => return self.pair.map(|(before, _)| self.number(before)),
+            "count" => return Some(self.number(self.neighbours())),
             _ => {}
         }
         let mut steps = path.split('.');
@@ -174,6 +194,17 @@ impl<'a, 't> Expansion<'a, 't> {
         Some(self.here(DeValue::String(name.into())))
     }
 
+    /// How many neighbours its one list has.
+    fn neighbours(&self) -> usize {
+        let lists = self.table.values().filter_map(|value| value.get_ref().as_array());
+        lists.map(|list| list.len().saturating_sub(1)).next().unwrap_or(0)
+    }
+
+    /// A number that is a part of a name.
+    fn number(&self, number: usize) -> Spanned<DeValue<'t>> {
+        self.here(DeValue::String(number.to_string().into()))
+    }
+
     fn joint(&self, name: &str) -> Option<&'a Table<'t>> {
         let joints = self.file.get("joint")?.get_ref().as_array()?;
         let mut joints = joints.iter().filter_map(|joint| joint.get_ref().as_table());
@@ -187,7 +218,7 @@ impl<'a, 't> Expansion<'a, 't> {
 
 /// A value as a part of a formula.
 fn in_formula(path: &str, value: &DeValue<'_>) -> Option<String> {
-    let is_name = path == "name" || path == "on" || path.ends_with(".on");
+    let is_name = matches!(path, "name" | "on" | "k" | "before" | "count") || path.ends_with(".on");
     Some(match value {
         DeValue::String(text) if is_name => text.to_string(),
         DeValue::String(text) => format!("({text})"),

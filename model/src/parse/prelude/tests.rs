@@ -4,8 +4,12 @@ use crate::keys::{ELEMENT, Kind};
 /// What stands in braces, up to the first dot or the equals sign.
 fn paths(text: &str) -> Vec<&str> {
     let parts = text.split('{').skip(1).filter_map(|rest| rest.split_once('}'));
-    let given = text.split("given = \"").skip(1).filter_map(|rest| rest.split_once('"'));
-    parts.chain(given).filter_map(|(path, _)| path.split(['.', '=']).next()).collect()
+    let quoted = |key| text.split(key).skip(1).filter_map(|rest| rest.split_once('"'));
+    parts
+        .chain(quoted("given = \""))
+        .chain(quoted("each = \""))
+        .filter_map(|(path, _)| path.split(['.', '=']).next())
+        .collect()
 }
 
 fn parts(kind: &Kind) -> String {
@@ -23,7 +27,7 @@ fn every_kind_has_parts_that_use_its_keys_and_no_others() {
         if used.contains(&"on") {
             used.extend(["joint", "coordinate"]);
         }
-        let known = |path: &&str| *path != "name" && *path != "on";
+        let known = |path: &&&str| !["name", "on", "k", "before", "count", "from", "to"].contains(*path);
         for path in used.iter().filter(|path| known(path)) {
             assert!(kind.key(path).is_some(), "{} has no key {path}", kind.word);
         }
