@@ -39,7 +39,10 @@ fn links_with_a_free_length_by_formula_pull_as_their_equation_does() {
     for options in RUNS.into_iter().chain([generated, stiff]) {
         let run = run(&page(WINCH), options, "1.5");
         let [found, rate, drift] = end(&run);
-        assert!((found - x).abs() < 1e-8 && (rate - v).abs() < 1e-8, "{options:?}: {found} {rate}, not {x} {v}");
+        assert!(
+            (found - x).abs() < 1e-8 && (rate - v).abs() < 1e-8,
+            "{options:?}: {found} {rate}, not {x} {v}"
+        );
         assert!(drift.abs() < 1e-8, "{options:?}: {drift}");
         let told = &run["outputs"]["pull"];
         let [force, length] = [0, 1].map(|k| told[k].as_f64().unwrap());
@@ -53,7 +56,8 @@ fn links_with_a_free_length_by_formula_pull_as_their_equation_does() {
 fn an_input_as_the_free_length_does_work() {
     let link = "[[force]]\nname = \"winch\"\nkind = \"link\"\nfirst = { body = \"ground\", point = [-0.2, 0.9, 0] }\n\
         second = { body = \"cart\" }\nstiffness = 40\nfree_length = ";
-    let [stored, worked] = ["0.1", "\"u\""].map(|length| run(&page(&format!("{link}{length}\n")), RUNS[0], "1"));
+    let [stored, worked] =
+        ["0.1", "\"u\""].map(|length| run(&page(&format!("{link}{length}\n")), RUNS[0], "1"));
     let [stored_end, worked_end] = [&stored, &worked].map(end);
     assert!((stored_end[0] - worked_end[0]).abs() < 1e-9, "{stored_end:?} {worked_end:?}");
     let folder = Folder::new("lengths");

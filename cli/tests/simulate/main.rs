@@ -9,6 +9,7 @@ mod contacts;
 mod controllers;
 mod curves;
 mod defaults;
+mod elements;
 mod events;
 mod followed;
 mod gravity;

@@ -39,6 +39,7 @@ const TABLES: [&Table; 19] = [
     &keys::MOTION,
     &keys::SINUSOID,
     &keys::FORCE,
+    &keys::ELEMENT,
     &keys::FORMULA,
     &keys::STATE,
     &keys::OUTPUT,
