@@ -25,7 +25,7 @@ fn read(text: &str) -> Result<Model, Diagnostics> {
 }
 
 /// All tables of keys that the document shows.
-const TABLES: [&Table; 19] = [
+const TABLES: [&Table; 20] = [
     &keys::FILE,
     &keys::ATTRACTION,
     &keys::SIMULATION,
