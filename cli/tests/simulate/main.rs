@@ -11,6 +11,7 @@ mod curves;
 mod defaults;
 mod elements;
 mod events;
+mod excavator;
 mod followed;
 mod gravity;
 mod inputs;
