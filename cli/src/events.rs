@@ -46,7 +46,7 @@ pub(crate) fn watches(model: &Model) -> Vec<Watch> {
 }
 
 /// A formula in numbers.
-fn formula(model: &Model, of: &gyro_model::Formula) -> Formula {
+pub(crate) fn formula(model: &Model, of: &gyro_model::Formula) -> Formula {
     use gyro_model::Operation as Of;
     let one = |operation: &Of| match operation {
         Of::Number(number) => Operation::Number(model.value(number)),
