@@ -27,6 +27,12 @@ static void gyro_combine(gyro_real *out, const gyro_real *y, gyro_real h, const 
         out[i] = h * gyro_sum(stage, k, i) + y[i];
 }
 
+/* The same with weights that are written out, which compilers make more of: y + h (a sum of weighted slopes). */
+#define AT(slope, a) K(a) * s->k[slope][i]
+#define STAGE(out, sum) \
+    for (int i = 0; i < GYRO_SOLVER_N; i++) \
+        (out)[i] = h * (sum) + y[i]
+
 /* The squares of the lengths of two differences, of slopes and of the states that they belong to: a rate. */
 static void gyro_rate(gyro_real rate[2], const gyro_real *slope_a, const gyro_real *slope_b,
     const gyro_real *state_a, const gyro_real *state_b)

@@ -1,28 +1,6 @@
 
 /* The pair of orders 5 and 4 of Ch. Tsitouras, Computers & Mathematics with Applications 62 (2011), 770-775, with its
  * interpolant of order 4. */
-static const gyro_stage gyro_tsit5_stages[6] = {
-    {0.161, 1, {0}, {
-        0.161
-    }},
-    {0.327, 2, {0, 1}, {
-        -0.008480655492356989, 0.335480655492357
-    }},
-    {0.9, 3, {0, 1, 2}, {
-        2.8971530571054935, -6.359448489975075, 4.3622954328695815
-    }},
-    {0.9800255409045097, 4, {0, 1, 2, 3}, {
-        5.325864828439257, -11.748883564062828, 7.4955393428898365, -0.09249506636175525
-    }},
-    {1.0, 5, {0, 1, 2, 3, 4}, {
-        5.86145544294642, -12.92096931784711, 8.159367898576159, -0.071584973281401, -0.028269050394068383
-    }},
-    {1.0, 6, {0, 1, 2, 3, 4, 5}, {
-        0.09646076681806523, 0.01, 0.4798896504144996, 1.379008574103742, -3.290069515436081,
-        2.324710524099774
-    }}
-};
-
 /* The interpolant's coefficients of the square, the cube and the fourth power; the error. */
 static const gyro_stage gyro_tsit5_sums[4] = {
     {0.0, 7, {0, 1, 2, 3, 4, 5, 6}, {
@@ -47,13 +25,22 @@ static void gyro_tsit5_attempt(gyro_solver *s, const gyro *m, gyro_real t, gyro_
 {
     if (!resumes)
         gyro_slope(s, m, t, y, s->k[0]);
-    for (int n = 0; n < 6; n++) {
-        gyro_real *to = n < 5 ? s->stage : s->end;
-        gyro_combine(to, y, h, &gyro_tsit5_stages[n], s->k);
-        if (n == 5)
-            gyro_normalise_orientations(to);
-        gyro_slope(s, m, t + K(gyro_tsit5_stages[n].c) * h, to, s->k[n + 1]);
-    }
+    STAGE(s->stage, AT(0, 0.161));
+    gyro_slope(s, m, t + K(0.161) * h, s->stage, s->k[1]);
+    STAGE(s->stage, AT(0, -0.008480655492356989) + AT(1, 0.335480655492357));
+    gyro_slope(s, m, t + K(0.327) * h, s->stage, s->k[2]);
+    STAGE(s->stage, AT(0, 2.8971530571054935) + AT(1, -6.359448489975075) + AT(2, 4.3622954328695815));
+    gyro_slope(s, m, t + K(0.9) * h, s->stage, s->k[3]);
+    STAGE(s->stage, AT(0, 5.325864828439257) + AT(1, -11.748883564062828) + AT(2, 7.4955393428898365)
+        + AT(3, -0.09249506636175525));
+    gyro_slope(s, m, t + K(0.9800255409045097) * h, s->stage, s->k[4]);
+    STAGE(s->stage, AT(0, 5.86145544294642) + AT(1, -12.92096931784711) + AT(2, 8.159367898576159)
+        + AT(3, -0.071584973281401) + AT(4, -0.028269050394068383));
+    gyro_slope(s, m, t + K(1.0) * h, s->stage, s->k[5]);
+    STAGE(s->end, AT(0, 0.09646076681806523) + AT(1, 0.01) + AT(2, 0.4798896504144996)
+        + AT(3, 1.379008574103742) + AT(4, -3.290069515436081) + AT(5, 2.324710524099774));
+    gyro_normalise_orientations(s->end);
+    gyro_slope(s, m, t + K(1.0) * h, s->end, s->k[6]);
     gyro_rate(s->rate, s->k[6], s->k[5], s->end, s->stage);
 }
 
