@@ -4,18 +4,20 @@ use super::numbers::{number, vector};
 use super::reader::Reader;
 use super::section::Section;
 use super::{references, tables};
-use crate::keys::{Value, lacking};
+use crate::keys::{COUPLER_END, Value, lacking};
 use crate::validate::Owner;
 use crate::{Element, Number};
 
 /// Reads all elements.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Element> {
-    let sections = tables::each(reader, page, "element", Owner::Element).into_iter();
-    sections.filter_map(|(section, name)| element(reader, section, name)).collect()
+    let sections = tables::each(reader, page, "element", Owner::Element).into_iter().enumerate();
+    sections.map(|(index, (section, name))| element(reader, section, (index, name))).collect()
 }
 
-fn element(reader: &mut Reader<'_>, mut section: Section<'_>, name: String) -> Option<Element> {
-    let kind = section.read_kind(reader, |_, _| None)?;
+fn element(reader: &mut Reader<'_>, mut section: Section<'_>, (index, name): (usize, String)) -> Element {
+    let Some(kind) = section.read_kind(reader, |_, _| None) else {
+        return Element { name, kind: "", numbers: Vec::new() };
+    };
     if kind.key("closed").is_some() {
         let twice = format!("{} is along a joint and between points", section.title);
         section.either(reader, ["joint", "first"], &twice);
@@ -45,15 +47,22 @@ fn element(reader: &mut Reader<'_>, mut section: Section<'_>, name: String) -> O
                 let given = section.find(reader, key.name).and_then(|item| vector::<3>(reader, item));
                 numbers.extend(given.into_iter().flatten().map(|number| (key.name, number)));
             }
+            Value::Table(ends) if std::ptr::eq(ends, &raw const COUPLER_END) => {
+                let title = format!("`{}` of {}", key.name, section.title);
+                if let Some(end) = section.inner(reader, key.name, (Owner::Element(index), &title)) {
+                    references::coordinate(reader, &end);
+                }
+            }
             Value::Tables(_) => {
                 let Some(item) = section.find(reader, key.name) else { continue };
                 if item.tables(reader).len() < 2 {
-                    item.wrong_type(reader, "an array of at least two tables");
+                    let help = format!("write {} = [{{ body = \"...\" }}, {{ body = \"...\" }}]", key.name);
+                    item.wrong_type_with(reader, "an array of at least two tables", help);
                 }
             }
             // Read where they stand in what the element stands for.
             _ => _ = section.find(reader, key.name),
         }
     }
-    Some(Element { name, kind: kind.word, numbers })
+    Element { name, kind: kind.word, numbers }
 }

@@ -45,6 +45,9 @@ const GIVEN: &str = "given";
 /// The key of the prelude that says of which list each two neighbours have a part.
 const EACH: &str = "each";
 
+/// A formula lacks a number of its element, which is told of the element.
+struct Incomplete;
+
 /// An element that is being read.
 #[derive(Clone)]
 struct Expansion<'a, 't> {
@@ -83,46 +86,49 @@ impl<'a, 't> Expansion<'a, 't> {
         if text(GIVEN).is_some_and(|given| !has(given)) {
             return Vec::new();
         }
-        let Some(list) = text(EACH) else { return vec![self.filled_table(part)] };
+        let Some(list) = text(EACH) else { return self.filled_table(part).into_iter().collect() };
         let elements = self.table.get(list).and_then(|list| list.get_ref().as_array());
         let pairs = elements.into_iter().flat_map(|elements| elements.windows(2)).enumerate();
-        pairs
-            .map(|(before, pair)| Self { pair: Some((before, pair)), ..self.clone() }.filled_table(part))
-            .collect()
+        let filled =
+            |(before, pair)| Self { pair: Some((before, pair)), ..self.clone() }.filled_table(part).ok();
+        pairs.filter_map(filled).collect()
     }
 
-    fn filled_table(&self, table: &Table<'_>) -> Spanned<DeValue<'t>> {
+    fn filled_table(&self, table: &Table<'_>) -> Result<Spanned<DeValue<'t>>, Incomplete> {
         let mut filled = DeTable::new();
         for (key, value) in table.iter().filter(|(key, _)| ![GIVEN, EACH].contains(&key.get_ref().as_ref())) {
-            if let Some(value) = self.filled(value.get_ref()) {
+            if let Some(value) = self.filled(value.get_ref())? {
                 filled.insert(self.here(DeString::from(key.get_ref().to_string())), value);
             }
         }
-        self.here(DeValue::Table(filled))
+        Ok(self.here(DeValue::Table(filled)))
     }
 
     /// A value of the prelude with what the element has in it; nothing if that is one that the element does not have.
-    fn filled(&self, value: &DeValue<'_>) -> Option<Spanned<DeValue<'t>>> {
-        match value {
-            DeValue::String(text) => self.filled_text(text),
+    fn filled(&self, value: &DeValue<'_>) -> Result<Option<Spanned<DeValue<'t>>>, Incomplete> {
+        Ok(match value {
+            DeValue::String(text) => {
+                let whole = text.strip_prefix('{').and_then(|rest| rest.strip_suffix('}'));
+                match whole.filter(|path| !path.contains('{')) {
+                    Some(path) => self.at(path),
+                    None => Some(self.filled_text(text).ok_or(Incomplete)?),
+                }
+            }
             DeValue::Array(elements) => {
                 let mut filled = DeArray::new();
-                elements
-                    .iter()
-                    .filter_map(|element| self.filled(element.get_ref()))
-                    .for_each(|one| filled.push(one));
+                for element in elements {
+                    if let Some(one) = self.filled(element.get_ref())? {
+                        filled.push(one);
+                    }
+                }
                 Some(self.here(DeValue::Array(filled)))
             }
-            DeValue::Table(table) => Some(self.filled_table(table)),
+            DeValue::Table(table) => Some(self.filled_table(table)?),
             _ => None,
-        }
+        })
     }
 
     fn filled_text(&self, text: &str) -> Option<Spanned<DeValue<'t>>> {
-        let whole = text.strip_prefix('{').and_then(|rest| rest.strip_suffix('}'));
-        if let Some(path) = whole.filter(|path| !path.contains('{')) {
-            return self.at(path);
-        }
         let (mut filled, mut rest, mut place) = (String::new(), text, None);
         while let Some((before, path, after)) = rest
             .split_once('{')
