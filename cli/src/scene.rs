@@ -4,7 +4,7 @@ use crate::args::{Engine, Precision, SimulateArgs};
 use crate::choice::{Chosen, choose};
 use crate::failure::Failure;
 use crate::progress::Spinner;
-use crate::{contacts, controllers, events, files, inputs, paths, remarks};
+use crate::{contacts, controllers, events, files, inputs, kinks, paths, remarks};
 use gyro_model::{ForceKind, JointKind, Model, Move, Number, Rational, Support};
 use gyro_runner::{
     Approach, Controller, Coordinates, Correction, Input, Offers, Settings, Start, any_varies,
@@ -75,7 +75,8 @@ impl Scene {
         let assembled = model
             .assemble()
             .map_err(|e| Failure::Usage(format!("{}: {e}: {}", args.model.display(), e.help())))?;
-        let start = Start { inputs, ..start(&model, &assembled) };
+        let kinks = if approach.tolerance.is_none() { kinks::kinks(&model) } else { Vec::new() };
+        let start = Start { inputs, kinks, ..start(&model, &assembled) };
         let moved = assembled.moved;
         Ok(Self {
             page,
@@ -262,6 +263,7 @@ pub(crate) fn start(model: &Model, assembled: &gyro_model::Start) -> Start {
         observed_bodies: observed(model).into_iter().map(|(moving_body, _)| moving_body).collect(),
         controllers: controllers::controllers(model),
         watches: events::watches(model),
+        kinks: Vec::new(),
         contacts: contacts::contacts(model),
         paths: paths::paths(model),
     }

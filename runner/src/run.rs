@@ -3,12 +3,14 @@
 mod advance;
 mod control;
 mod halt;
+mod kinks;
 mod sides;
 mod start;
 mod state;
 mod watch;
 
 use halt::Halt;
+use kinks::Laws;
 pub use start::Start;
 pub(crate) use state::state;
 
@@ -252,6 +254,7 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     taken_at: f64,
     controllers: Controllers<M::Scalar>,
     watches: Watches<M::Scalar>,
+    laws: Laws,
     paths: Paths,
     steps_at_once: u64,
     /// Fixed steps that may yet be taken; under error control the solver counts them.
@@ -283,8 +286,10 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
             taken_at: if approach.meets_knots { 0.5 } else { 0.0 },
             controllers: Controllers::new(&start.controllers),
             watches: Watches::new(&start.watches),
+            laws: Laws::new(if approach.tolerance.is_none() { &start.kinks } else { &[] }),
             steps_at_once: if any_varies(&start.inputs)
                 || !start.watches.is_empty()
+                || !start.kinks.is_empty()
                 || !start.contacts.is_empty()
                 || !paths.is_empty()
             {
@@ -312,6 +317,7 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
     ) -> Result<(), Halt> {
         let mut tracker = Tracker::default();
         self.record(0.0, (builder, approach), &mut tracker, told)?;
+        self.count_kinks();
         let knots = if approach.meets_knots { self.knots() } else { Vec::new() };
         for segment in Schedule::new(settings).ending_at(knots) {
             match approach.tolerance {

@@ -23,6 +23,8 @@ pub struct Summary {
     pub energy_drift: f64,
     /// Seconds spent stepping and correcting, without samples and their output.
     pub run_time_s: f64,
+    /// How often steps of fixed length have gone over a kink of a law.
+    pub kinks_crossed: u64,
     /// What the steps have cost and met.
     pub statistics: Statistics,
     /// The smallest pivot of the constraint Jacobian at any sample; `None` if it was not requested, or the engine does

@@ -9,6 +9,7 @@ mod contacts;
 mod controllers;
 mod curves;
 mod defaults;
+mod edges;
 mod events;
 mod followed;
 mod inputs;

@@ -46,6 +46,7 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
             self.look_into_step(from, told)?;
             self.resolve(told)?;
             self.read_turns(self.motion.time())?;
+            self.count_kinks();
             told.progress(self.motion.time())?;
         }
         if segment.corrects && self.watches.end.is_none() {
