@@ -74,6 +74,17 @@ pub struct Force {
     pub kind: ForceKind,
 }
 
+/// A ready element, which stands for forces, states, outputs and formulas of the model.
+#[derive(Clone, Debug)]
+pub struct Element {
+    /// Name, an identifier, with which the names of its parts begin.
+    pub name: String,
+    /// The word of its kind.
+    pub kind: &'static str,
+    /// What it was told, by its keys: of a vector each number.
+    pub numbers: Vec<(&'static str, Number)>,
+}
+
 /// The kinds of force. A force `F(x, ẋ)` *along a joint coordinate* x acts on the second body and as `−F` on the first:
 /// of an angle it is the torque `F h_j` on the second body and `−F h_i` on the first, each body's own joint axis
 /// (universal: both about `h_i` for the first angle and about `h_j` for the second); of a displacement along u (h_i,
@@ -377,7 +388,8 @@ pub enum OutputKind {
         /// Index into [`crate::Model::forces`], of a spring.
         force: usize,
     },
-    /// Force with which a link pushes its ends apart, its spring's and its damper's (N), and its length (m).
+    /// Force with which a link pushes its ends apart, its spring's and its damper's (N), its length (m) and
+    /// the rate of that (m/s).
     Link {
         /// Index into [`crate::Model::forces`], of a link.
         force: usize,
@@ -466,7 +478,7 @@ impl OutputKind {
             ],
             Self::Driver { .. } | Self::Coupler { .. } => &[("", "N*m or N")],
             Self::Spring { .. } => &[("force", "N*m or N"), ("deflection", "rad or m")],
-            Self::Link { .. } => &[("force", "N"), ("length", "m")],
+            Self::Link { .. } => &[("force", "N"), ("length", "m"), ("rate", "m/s")],
             Self::Bushing { .. } => &[
                 ("x", "m"),
                 ("y", "m"),

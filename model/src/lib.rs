@@ -45,7 +45,7 @@ pub use coordinate::{CoordinateKind, CoordinateUse, JointCoordinate, Seen};
 pub use curve::{Beyond, Curve, Joined};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{
-    Coupler, Coupling, Driver, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind, StopSide,
+    Coupler, Coupling, Driver, Element, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind, StopSide,
 };
 pub use event::{Direction, Event};
 pub use frames::{BodyFrame, Bushing, BushingLaw};
@@ -92,6 +92,8 @@ pub struct Model {
     pub drivers: Vec<Driver>,
     /// Forces besides gravity and the joints' own friction.
     pub forces: Vec<Force>,
+    /// Ready elements, with what they were told: what they stand for is among forces, states, outputs and formulas.
+    pub elements: Vec<Element>,
     /// Curves that formulas call, by their places in this list.
     pub curves: Vec<Curve>,
     /// Formulas that have a name. Wherever the model file names one, its operations stand in the model.

@@ -155,11 +155,12 @@ impl<T: Number> Leaf<T> {
                 OutputKind::Inertial(frame) if number >= 3 => {
                     Self::Velocity(Spot::new(model, places, frame), number)
                 }
-                OutputKind::Link { force } if number == 1 => match &model.forces[*force].kind {
+                OutputKind::Link { force } if number >= 1 => match &model.forces[*force].kind {
                     ForceKind::Link { first, second, .. } => {
                         let end =
                             |(body, point): &(usize, _)| (places.of(*body), vector(model.values(point)));
-                        Self::Coordinate(Path::Line([end(first), end(second)]))
+                        let line = Path::Line([end(first), end(second)]);
+                        if number == 1 { Self::Coordinate(line) } else { Self::Rate(line) }
                     }
                     _ => unreachable!("the output is one of a link"),
                 },

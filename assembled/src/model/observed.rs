@@ -66,6 +66,9 @@ impl<T: Number> Lowered<T> {
                 let spring = -value(&elastic.stiffness) * deflection;
                 out[0] = spring - value(&elastic.damping) * rate - value(&elastic.tension);
                 out[1] = if elastic.is_link { x } else { deflection };
+                if let Some(out) = out.get_mut(2) {
+                    *out = rate;
+                }
             }
             Quantity::Bushing(bushing) => out.copy_from_slice(bushing.told(&self.scene, at).as_flattened()),
             Quantity::Load(row) => out[0] = row.map_or(T::zero(), |row| -solution.lambda[row]),

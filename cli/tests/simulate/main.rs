@@ -10,6 +10,7 @@ mod controllers;
 mod curves;
 mod defaults;
 mod edges;
+mod elements;
 mod events;
 mod followed;
 mod inputs;

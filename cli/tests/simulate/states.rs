@@ -15,7 +15,7 @@ const MOTOR: &str = "format = 1\nname = \"motor\"\n[parameters]\nresistance = 2\
     rate = \"(voltage - resistance*current - constant*shaft rate)/inductance\"\n[[force]]\nname = \"torque\"\n\
     kind = \"motor\"\njoint = \"shaft\"\nvalue = \"constant*current\"\n";
 
-const RUNS: [&[&str]; 5] = [
+pub(crate) const RUNS: [&[&str]; 5] = [
     &["--integrator", "dop853", "--tolerance", "1e-13"],
     &["--coordinates", "maximal", "--integrator", "dop853", "--tolerance", "1e-13"],
     &["--integrator", "tsit5", "--tolerance", "1e-12"],
@@ -23,7 +23,7 @@ const RUNS: [&[&str]; 5] = [
     &["--engine", "assembled", "--integrator", "dop853", "--tolerance", "1e-13"],
 ];
 
-fn run(page: &str, options: &[&str], t_end: &str) -> Value {
+pub(crate) fn run(page: &str, options: &[&str], t_end: &str) -> Value {
     printed(page, &[options, &["--t-end", t_end]].concat())
 }
 
@@ -35,7 +35,7 @@ fn printed(page: &str, options: &[&str]) -> Value {
 }
 
 /// By Kutta's method in steps of 1e-5 s.
-fn integrated<const N: usize>(
+pub(crate) fn integrated<const N: usize>(
     mut y: [f64; N],
     t_end: f64,
     rates: impl Fn([f64; N], f64) -> [f64; N],
@@ -62,11 +62,11 @@ fn example(name: &str, t_end: &str) -> Value {
     json(&folder, &[&page, "--t-end", t_end, "--integrator", "dop853", "--tolerance", "1e-12"])
 }
 
-fn number(value: &Value) -> f64 {
+pub(crate) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-fn output(run: &Value, name: &str) -> f64 {
+pub(crate) fn output(run: &Value, name: &str) -> f64 {
     let output = &run["outputs"][name];
     number(output.get(0).unwrap_or(output))
 }
@@ -201,7 +201,7 @@ fn the_slider_crank_runs_up_as_its_equations_do() {
     });
     let run = example("dc_motor", "0.3");
     let shaft = &run["joints"]["shaft"];
-    let found = [number(&shaft["position"]), number(&shaft["rate"]), output(&run, "current")];
+    let found = [number(&shaft["position"]), number(&shaft["rate"]), output(&run, "motor_current")];
     for (found, expected) in found.into_iter().zip([angle, speed, current]) {
         assert!((found - expected).abs() < 1e-8 * expected.abs().max(1.0), "{found} {expected}");
     }
@@ -216,6 +216,6 @@ fn the_block_sticks_and_slips_as_its_equations_do() {
         [v, -1e5 * z - 316.0 * bends - 0.4 * v + 2.0 * (0.1 * t - x), bends]
     });
     let run = example("stick_slip", "4");
-    let found = [number(&run["joints"]["x"]["position"]), output(&run, "bristle")];
+    let found = [number(&run["joints"]["x"]["position"]), output(&run, "friction_bristles")];
     assert!((found[0] - x).abs() < 1e-9 && (found[1] - bristle).abs() < 1e-12, "{found:?} {x} {bristle}");
 }

@@ -274,17 +274,17 @@ impl Pull {
     }
 }
 
-/// Force and deflection of a spring, force and length of a link.
-pub fn elastic(system: &mut System, force: usize) -> [ExprId; 2] {
+/// Force and deflection of a spring; force, length and its rate of a link.
+pub fn elastic(system: &mut System, force: usize) -> Vec<ExprId> {
     let kind = &system.model.forces[force].kind;
     match kind {
         ForceKind::Spring { on, stiffness, free } => {
             let (x, [stiffness, free]) =
                 (joint_coordinate::value(system, *on), numbers(system, [stiffness, free]));
             let (force, _) = spring(&mut system.graph, stiffness, x, free);
-            [force, system.graph.sub(x, free)]
+            vec![force, system.graph.sub(x, free)]
         }
-        _ => Pull::of(system, kind).map_or([Graph::ZERO; 2], |pull| [pull.force, pull.length]),
+        _ => Pull::of(system, kind).map(|pull| vec![pull.force, pull.length, pull.rate]).unwrap_or_default(),
     }
 }
 

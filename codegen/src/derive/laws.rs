@@ -93,9 +93,16 @@ fn of_output(system: &mut System, output: usize, number: usize) -> ExprId {
         OutputKind::Link { force } => match &system.model.forces[*force].kind {
             ForceKind::Link { first, second, .. } => {
                 let [from, to] = [first, second].map(|(body, point)| PointOfBody::new(system, *body, point));
-                let line = system.graph.sub_vec(&to.position, &from.position);
-                let square = system.graph.dot(&line, &line);
-                system.graph.sqrt(square)
+                let graph = &mut system.graph;
+                let line = graph.sub_vec(&to.position, &from.position);
+                let square = graph.dot(&line, &line);
+                let length = graph.sqrt(square);
+                if number == 1 {
+                    return length;
+                }
+                let drift = graph.sub_vec(&to.velocity, &from.velocity);
+                let product = graph.dot(&line, &drift);
+                graph.div(product, length)
             }
             _ => unreachable!("the output is one of a link"),
         },

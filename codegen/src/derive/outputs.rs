@@ -70,7 +70,7 @@ fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<Exp
             let rows = system.model.rows_of(RowOwner::Coupler(*coupler));
             vec![rows.fold(Graph::ZERO, |sum, row| system.graph.sub(sum, sources.lambda[row]))]
         }
-        OutputKind::Spring { force } | OutputKind::Link { force } => forces::elastic(system, *force).to_vec(),
+        OutputKind::Spring { force } | OutputKind::Link { force } => forces::elastic(system, *force),
         OutputKind::State { state } => vec![system.graph.symbol(Symbol::State(*state))],
         OutputKind::Bushing { force } => bushings::told(system, *force),
         OutputKind::Formula(formula) => vec![formula_value(system, sources, formula)],

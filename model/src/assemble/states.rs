@@ -123,17 +123,15 @@ impl Still<'_> {
         match kind {
             OutputKind::Pose(frame) if number < 3 => self.tip(frame.body, &frame.point)[number],
             OutputKind::Pose(frame) => (self.body(frame.body).p * self.turn(frame)).0[number - 3],
-            OutputKind::Velocity(frame) if number < 3 => {
-                let Prescribed { p, s, w, .. } = self.body(frame.body);
-                let point = Vector::from(self.model.values(&frame.point));
-                (s + p.rotate(w.cross(&point)))[number]
-            }
+            OutputKind::Velocity(frame) if number < 3 => self.tip_velocity(frame.body, &frame.point)[number],
             OutputKind::Velocity(frame) | OutputKind::Inertial(frame) => {
                 self.turn(frame).rotate_back(self.body(frame.body).w)[number - 3]
             }
             OutputKind::Link { force } => match &self.model.forces[*force].kind {
                 ForceKind::Link { first, second, .. } => {
-                    (self.tip(second.0, &second.1) - self.tip(first.0, &first.1)).norm()
+                    let line = self.tip(second.0, &second.1) - self.tip(first.0, &first.1);
+                    let drift = self.tip_velocity(second.0, &second.1) - self.tip_velocity(first.0, &first.1);
+                    if number == 1 { line.norm() } else { line.dot(&drift) / line.norm() }
                 }
                 _ => f64::NAN,
             },
@@ -164,6 +162,11 @@ impl Still<'_> {
     fn tip(&self, body: usize, point: &[Number; 3]) -> Vector {
         let Prescribed { r, p, .. } = self.body(body);
         r + p.rotate(Vector::from(self.model.values(point)))
+    }
+
+    fn tip_velocity(&self, body: usize, point: &[Number; 3]) -> Vector {
+        let Prescribed { p, s, w, .. } = self.body(body);
+        s + p.rotate(w.cross(&Vector::from(self.model.values(point))))
     }
 
     fn body(&self, body: usize) -> Prescribed {

@@ -1,8 +1,8 @@
 //! The whole file, how it is run, and motions.
 
 use super::{
-    BODY, CONTACT, CONTROLLER, COUPLER, CURVE, DRIVER, EVENT, FORCE, FORMULA, JOINT, Key, OUTPUT, STATE,
-    Table, Value, flag, name, number, plain, table, tables, text, vector, word,
+    BODY, CONTACT, CONTROLLER, COUPLER, CURVE, DRIVER, ELEMENT, EVENT, FORCE, FORMULA, JOINT, Key, OUTPUT,
+    STATE, Table, Value, flag, name, number, plain, table, tables, text, vector, word,
 };
 
 /// The whole model file.
@@ -46,6 +46,7 @@ pub static FILE: Table = Table::new(
             &FORCE,
             "one `[[force]]` a spring, damper, friction, stop, motor, link, load, potential or dissipation",
         ),
+        tables(&ELEMENT, "one `[[element]]` a motor, cylinder, propeller or the like, ready made"),
         tables(&CURVE, "one `[[curve]]` a curve of a table, or of points, that formulas call"),
         tables(&FORMULA, "one `[[formula]]` a formula that has a name"),
         tables(&STATE, "one `[[state]]` a quantity that a differential equation tells"),

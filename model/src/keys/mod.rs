@@ -5,12 +5,14 @@
 use crate::Seen;
 
 mod bodies;
+mod elements;
 mod file;
 mod forces;
 mod joints;
 mod observed;
 
 pub use bodies::{BODY, DRIVEN, ELEMENTS, POINT_MASS, ROTATION, SHAPE};
+pub use elements::ELEMENT;
 pub use file::{FILE, GENERATE, INPUT, MOTION, SIMULATION, SINUSOID};
 pub use forces::{BUSHING_END, FORCE, FORCE_END};
 pub use joints::{COUPLER, COUPLER_END, DRIVER, JOINT, JOINT_END};
@@ -293,6 +295,10 @@ const fn reference(name: &'static str, meaning: &'static str) -> Key {
 
 const fn table(name: &'static str, table: &'static Table, meaning: &'static str) -> Key {
     Key::new(name, Value::Table(table), meaning)
+}
+
+const fn tables_of(table: &'static Table, name: &'static str, meaning: &'static str) -> Key {
+    Key::new(name, Value::Tables(table), meaning)
 }
 
 const fn tables(table: &'static Table, meaning: &'static str) -> Key {

@@ -48,7 +48,7 @@ pub static OUTPUT: Table = Table::new(
         &[reference("coupler", "")],
     ),
     kind("spring", "torque or force of the spring (N·m or N), and its deflection (rad or m)", FORCE),
-    kind("link", "force with which the link pushes its ends apart (N), and its length (m)", FORCE),
+    kind("link", "force with which the link pushes its ends apart (N), its length (m), and the rate of that (m/s)", FORCE),
     kind(
         "bushing",
         "where its second frame is, seen from the first (m and rad), and force or torque along each of these (N and N·m)",

@@ -79,7 +79,7 @@ fn refused(kinds: &[OutputKind], what: &str, (name, seen): (&str, Seen)) -> Opti
     let is_early = match kinds.get(output)? {
         OutputKind::Pose(_) | OutputKind::Velocity(_) | OutputKind::State { .. } => true,
         OutputKind::Inertial(_) => number >= 3,
-        OutputKind::Link { .. } => number == 1,
+        OutputKind::Link { .. } => number >= 1,
         OutputKind::Bushing { .. } => number < 6,
         _ => false,
     };

@@ -8,6 +8,7 @@ mod controllers;
 mod couplings;
 mod curves;
 mod driven;
+mod elements;
 mod events;
 mod expression;
 mod forces;
@@ -27,6 +28,7 @@ mod outputs;
 mod page;
 mod parameters;
 mod point_masses;
+mod prelude;
 mod reader;
 mod references;
 mod section;
@@ -122,7 +124,9 @@ pub fn read_with(
 ) -> Result<Model, Diagnostics> {
     let (document, syntax) = DeTable::parse_recoverable(text);
     let mut reader = Reader::new(text, load);
-    let mut model = page::read(&mut reader, document.get_ref());
+    let (document, elements) = prelude::expanded(document.get_ref());
+    reader.elements = elements;
+    let mut model = page::read(&mut reader, &document);
     directions::settle(&mut model);
     check(&mut reader, &mut model);
     let mistakes = if syntax.is_empty() {

@@ -8,8 +8,8 @@ use super::names;
 use super::reader::Reader;
 use super::section::{Section, keyword};
 use super::{
-    bodies, contacts, controllers, couplings, curves, events, forces, joints, named_formulas, outputs,
-    parameters, point_masses, seen, simulation, states,
+    bodies, contacts, controllers, couplings, curves, elements, events, forces, joints, named_formulas,
+    outputs, parameters, point_masses, seen, simulation, states,
 };
 use crate::keys::{FILE, GENERATE};
 use crate::validate::{Owner, Place};
@@ -52,6 +52,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     reader.visible = seen::known(reader, &outputs);
     reader.outputs = outputs.iter().map(|output| output.kind.clone()).collect();
     named_formulas::read(reader, &page);
+    let elements = elements::read(reader, &page);
     outputs::read_formulas(reader, pending, &mut outputs);
     let mut forces = forces::read(reader, sections);
     forces.extend(contacts.iter().map(Contact::own_force));
@@ -71,6 +72,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         couplers,
         drivers,
         forces,
+        elements,
         curves: std::mem::take(&mut reader.curves),
         formulas: std::mem::take(&mut reader.formulas),
         states,

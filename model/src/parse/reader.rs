@@ -39,6 +39,8 @@ pub(super) struct Reader<'t> {
     pub(super) curves: Vec<Curve>,
     /// Formulas that have a name.
     pub(super) formulas: Vec<(String, Formula)>,
+    /// Where the values of ready elements are: what they stand for has these places, too.
+    pub(super) elements: Vec<Range<usize>>,
     /// Kinds of its joints, likewise.
     pub(super) joint_kinds: Vec<Option<JointKind>>,
     /// Names of joints, couplers, drivers and outputs so far, with their places and what they are.
@@ -78,6 +80,7 @@ impl<'t> Reader<'t> {
             outputs: Vec::new(),
             curves: Vec::new(),
             formulas: Vec::new(),
+            elements: Vec::new(),
             joint_kinds: Vec::new(),
             taken: HashMap::new(),
         }
@@ -86,7 +89,7 @@ impl<'t> Reader<'t> {
     /// Takes a name of something that stands in results and messages by its name alone: joints, couplers, drivers and
     /// outputs share their names.
     pub(super) fn take(&mut self, place: Place, span: &Range<usize>, name: &str, what: &'static str) {
-        if matches!(what, "body" | "force" | "controller" | "event" | "contact") {
+        if matches!(what, "body" | "element" | "force" | "controller" | "event" | "contact") {
             return;
         }
         let earlier = self.taken.get(name).filter(|(_, kind)| *kind != what).cloned();
@@ -234,7 +237,15 @@ impl<'t> Reader<'t> {
         syntax.into_iter().chain(certain).collect()
     }
 
+    /// What is wrong with an element is said once, not again of what it stands for.
     fn push(&mut self, nature: Nature, diagnostic: Diagnostic) {
+        let is_within =
+            |inner: &Range<usize>, outer: &Range<usize>| outer.start <= inner.start && inner.end <= outer.end;
+        let place = self.elements.iter().find(|place| is_within(&diagnostic.span, place));
+        let mut known = self.mistakes.iter().map(|mistake| &mistake.diagnostic.span);
+        if place.is_some_and(|place| known.any(|known| is_within(known, place))) {
+            return;
+        }
         self.mistakes.push(Mistake { nature, diagnostic });
     }
 

@@ -1,7 +1,7 @@
 //! Couplers and drivers must not contradict one another, and forces and outputs must act on something.
 
 use super::{Owner, Place, Problem, Side};
-use crate::{CoordinateKind, ForceKind, JointCoordinate, Model, OutputKind, Support};
+use crate::{CoordinateKind, Element, ForceKind, JointCoordinate, Model, OutputKind, Support};
 
 /// Everything that is wrong, couplers first.
 pub(crate) fn problems(model: &Model) -> Vec<Problem> {
@@ -134,11 +134,19 @@ fn contradicting_drivers(model: &Model, groups: &mut Groups) -> Vec<Problem> {
     found
 }
 
+/// From one pulley to the next a rope may be as long as ever.
+fn is_part_of_rope(model: &Model, name: &str) -> bool {
+    let mut ropes = model.elements.iter().filter(|element| element.kind == "rope");
+    let part = |rope: &Element| name.strip_prefix(&rope.name)?.strip_prefix('_')?.parse::<usize>().ok();
+    ropes.any(|rope| part(rope).is_some())
+}
+
 /// A link or a bushing from a body to itself, or a force that can move nothing.
 fn idle_force(model: &Model, index: usize) -> Option<Problem> {
     let force = &model.forces[index];
     let moves = |body: &usize| model.bodies.get(*body).is_none_or(|b| b.support.has_coordinates());
     match &force.kind {
+        ForceKind::Link { .. } if is_part_of_rope(model, &force.name) => None,
         ForceKind::Link { .. } | ForceKind::Bushing(_) => {
             let (word, [first, second]) = force.kind.between()?;
             let place = |side| Place { owner: Owner::ForceEnd(index, side), key: "body" };

@@ -60,6 +60,7 @@ pub(crate) enum Owner {
     Driver(usize),
     Force(usize),
     ForceEnd(usize, Side),
+    Element(usize),
     Output(usize),
     Curve(usize),
     Formula(usize),

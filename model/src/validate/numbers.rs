@@ -31,6 +31,9 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
         found.extend(Ranged::of_force(index, force).problems(model));
         found.extend(directions::of_force(model, index, force));
     }
+    for (index, element) in model.elements.iter().enumerate() {
+        found.extend(Ranged::of_element(index, element).problems(model));
+    }
     for (index, controller) in model.controllers.iter().enumerate() {
         found.extend(controllers::problems(model, index, controller));
         found.extend(Ranged::of_controller(index, controller).problems(model));

@@ -6,8 +6,8 @@ use num_traits::{Signed, Zero};
 
 use super::inertia::is_left_out;
 use super::{Owner, ParameterRule, Place, Problem, shown};
-use crate::keys::{BODY, CONTACT, CONTROLLER, COUPLER, FORCE, JOINT, Key, Range};
-use crate::{Body, Contact, Controller, Coupler, Force, Joint, JointKind, Model, Number, Rational};
+use crate::keys::{BODY, CONTACT, CONTROLLER, COUPLER, ELEMENT, FORCE, JOINT, Key, Range};
+use crate::{Body, Contact, Controller, Coupler, Element, Force, Joint, JointKind, Model, Number, Rational};
 
 /// The message for a number that is out of its key's range.
 pub(crate) fn out_of_range(key: &Key, title: &str, value: &Rational) -> Option<[String; 3]> {
@@ -80,6 +80,12 @@ impl<'m> Ranged<'m> {
         let numbers = parts.numbers.into_iter();
         let numbers = numbers.flat_map(|(name, numbers)| numbers.iter().map(move |number| (name, number)));
         Self::new((Owner::Force(index), format!("force `{}`", force.name)), keys, numbers)
+    }
+
+    pub(super) fn of_element(index: usize, element: &'m Element) -> Self {
+        let keys = ELEMENT.kind(element.kind).map_or(&[][..], |kind| kind.keys);
+        let numbers = element.numbers.iter().map(|(name, number)| (*name, number));
+        Self::new((Owner::Element(index), format!("element `{}`", element.name)), keys, numbers)
     }
 
     pub(super) fn of_controller(index: usize, controller: &'m Controller) -> Self {

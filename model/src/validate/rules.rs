@@ -72,6 +72,7 @@ impl Model {
         rules.extend(frames.filter_map(|frame| frame.orientation.as_ref()).map(|p| NotZero(p)));
         rules.extend(self.couplers.iter().flat_map(|coupler| Ranged::of_coupler(0, coupler).rules()));
         rules.extend(self.forces.iter().flat_map(|force| Ranged::of_force(0, force).rules()));
+        rules.extend(self.elements.iter().flat_map(|element| Ranged::of_element(0, element).rules()));
         for divisor in self.numbers().into_iter().flat_map(Number::divisors) {
             let rule = NotZero(std::slice::from_ref(divisor));
             if !rules.contains(&rule) {

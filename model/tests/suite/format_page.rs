@@ -25,7 +25,7 @@ fn read(text: &str) -> Result<Model, Diagnostics> {
 }
 
 /// All tables of keys that the document shows.
-const TABLES: [&Table; 18] = [
+const TABLES: [&Table; 19] = [
     &keys::FILE,
     &keys::SIMULATION,
     &keys::BODY,
@@ -38,6 +38,7 @@ const TABLES: [&Table; 18] = [
     &keys::MOTION,
     &keys::SINUSOID,
     &keys::FORCE,
+    &keys::ELEMENT,
     &keys::FORMULA,
     &keys::STATE,
     &keys::OUTPUT,

@@ -22,6 +22,7 @@ mod laws;
 mod linkages;
 mod loops;
 mod page;
+mod ready;
 mod vector;
 
 use dice::Dice;
@@ -65,6 +66,7 @@ fn text(mut page: Page, seed: u64) -> String {
     page.laws(seed);
     page.curves(seed);
     page.bushings(seed);
+    page.ready(seed);
     page.read();
     page.text()
 }

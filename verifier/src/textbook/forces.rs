@@ -113,12 +113,13 @@ impl<F: Field> Evaluation<'_, F> {
         Some(push - damping * slope * self.coordinate_rate(*on))
     }
 
-    /// Of a spring its force and how far it is from where it is free; of a link its thrust and its length.
-    pub(super) fn elastic(&self, force: usize) -> Option<[F; 2]> {
+    /// Of a spring its force and how far it is from where it is free; of a link its thrust, its length and how fast that
+    /// grows.
+    pub(super) fn elastic(&self, force: usize) -> Option<Vec<F>> {
         let numbers = match &self.textbook.model.forces[force].kind {
             ForceKind::Spring { on, stiffness, free } => {
                 let stretch = self.coordinate(*on, &self.still)? - self.scope.number(free);
-                [-(self.scope.number(stiffness) * &stretch), stretch]
+                vec![-(self.scope.number(stiffness) * &stretch), stretch]
             }
             ForceKind::Link { first, second, stiffness, damping, free_length, tension } => {
                 let [from, to] = [first, second].map(|(body, point)| {
@@ -131,11 +132,11 @@ impl<F: Field> Evaluation<'_, F> {
                 let pull = self.scope.number(stiffness) * (length.clone() - self.scope.number(free_length));
                 let [damping, tension] =
                     [damping, tension].map(|number| self.strength_of(number, Own::Line([&length, &growth])));
-                [-(pull + damping? * &growth + tension?), length]
+                vec![-(pull + damping? * &growth + tension?), length, growth]
             }
             _ => return None,
         };
-        Some(numbers.map(|number| number.value))
+        Some(numbers.into_iter().map(|number| number.value).collect())
     }
 
     /// Along the line between two points.

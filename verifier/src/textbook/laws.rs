@@ -130,10 +130,14 @@ impl<F: Field> Evaluation<'_, F> {
             }
             OutputKind::Link { force } => {
                 let ForceKind::Link { first, second, .. } = &model.forces[*force].kind else { return None };
-                let [from, to] = [first, second]
-                    .map(|(body, point)| self.moving[*body].pose.point(&self.scope.vector(point)));
-                let line = to - from;
-                self.scope.sqrt(&line.dot(&line)).map(|length| length.value)
+                let [from, to] = [first, second].map(|(body, point)| {
+                    let (moving, point) = (&self.moving[*body], self.scope.vector(point));
+                    (moving.pose.point(&point), moving.velocity(&point))
+                });
+                let (line, drift) = (to.0 - from.0, to.1 - from.1);
+                let length = self.scope.sqrt(&line.dot(&line))?;
+                let seen = if number == 1 { length } else { line.dot(&drift) * length.reciprocal()? };
+                Some(seen.value)
             }
             OutputKind::Bushing { force } => {
                 let ForceKind::Bushing(bushing) = &model.forces[*force].kind else { return None };

@@ -127,7 +127,7 @@ impl<F: Field> Evaluation<'_, F> {
             }
             OutputKind::Driver { driver } => vec![self.load(RowOwner::Driver(*driver), lambda)],
             OutputKind::Coupler { coupler } => vec![self.load(RowOwner::Coupler(*coupler), lambda)],
-            OutputKind::Spring { force } | OutputKind::Link { force } => self.elastic(*force)?.to_vec(),
+            OutputKind::Spring { force } | OutputKind::Link { force } => self.elastic(*force)?,
             OutputKind::Energy => self.energy()?.to_vec(),
             OutputKind::Power => self.power(lambda, accelerations)?.to_vec(),
         })

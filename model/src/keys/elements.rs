@@ -1,0 +1,179 @@
+//! Ready elements: what each may be told. What it stands for is in `prelude.toml`.
+
+use super::{
+    COUPLER_END, FORCE_END, KIND, Key, ON_COORDINATE, ON_JOINT, POINT, Table, kind, name, number,
+    orientation, reference, strength, strengths, table, tables_of, vector, word,
+};
+
+const SIDES: &[(&str, &str)] = &[("lower", ""), ("upper", "")];
+const LOSES: &str = "it would drive the motion";
+const FIRST: Key = table("first", &FORCE_END, "a table of `body` and `point`").required();
+const SECOND: Key = table("second", &FORCE_END, "likewise").required();
+const STIFFNESS: Key = number("stiffness", "N/m", "").positive("it would exert no force").required();
+const DAMPING: Key = number("damping", "N.s/m", "").not_negative(LOSES).or("0");
+const LENGTH: Key = strength("free_length", "m", "beyond which it pulls: a formula winds it up").required();
+const LEVEL: Key = strength("level", "N.m or N", "of sliding").not_negative(LOSES).required();
+const STATIC: Key = strength("static_level", "N.m or N", "of breaking away").not_negative(LOSES).required();
+const STRIBECK: Key =
+    number("stribeck_rate", "rad/s or m/s", "at which friction has come down from the one to the other")
+        .positive("friction would jump")
+        .required();
+const VISCOUS: Key = number("viscous", "N.m.s/rad or N.s/m", "").not_negative(LOSES).or("0");
+
+/// `[[element]]`.
+pub static ELEMENT: Table = Table::new(
+    "element",
+    "A ready element: forces, states and outputs that belong together.",
+    &[name("name, with which the names of its parts begin"), KIND],
+)
+.of_kinds(&[
+    kind(
+        "dc_motor",
+        "a motor on direct current that turns a joint through a gear: L i̇ = `voltage` − R i − k N ẋ and the torque \
+         k N i, times the efficiency of the gear when it drives and over it when it is driven; state `NAME_current`",
+        &[
+            ON_JOINT,
+            ON_COORDINATE,
+            strength("voltage", "V", "usually an input").required(),
+            number("resistance", "ohm", "R").positive("the current would have no bound").required(),
+            number("inductance", "H", "L").positive("the current would jump").required(),
+            number("constant", "N.m/A or V.s/rad", "k").not_zero("it would exert no torque").required(),
+            number("ratio", "", "N: turns of the motor for one of the joint").or("1"),
+            number("efficiency", "", "of the gear, up to 1").positive("nothing would come through").or("1"),
+        ],
+    ),
+    kind(
+        "cylinder",
+        "a hydraulic cylinder along a joint coordinate x, its valve on a pump and a tank: the pressure of each chamber \
+         has the rate `bulk_modulus` · (flow − area · ẋ) / volume, a flow through the open valve is `valve` · `opening` \
+         · √(difference of pressures), and the force is p_a · `area` − p_b · `rod_area`; states `NAME_pressure_a` and \
+         `NAME_pressure_b`",
+        &[
+            ON_JOINT,
+            ON_COORDINATE,
+            strength("opening", "", "of the valve, from −1 (retract) to 1 (extend), usually an input").required(),
+            number("supply", "Pa", "pressure of the pump").positive("").required(),
+            number("tank", "Pa", "pressure of the tank").or("0"),
+            number("valve", "m3/s/Pa^0.5", "flow for the root of a pressure, wide open").positive("").required(),
+            number("area", "m2", "of the piston, in chamber a, which extends").positive("").required(),
+            number("rod_area", "m2", "of the piston less the rod, in chamber b").positive("").required(),
+            number("stroke", "m", "from x = 0, where chamber a has its least volume").positive("").required(),
+            number("dead_volume", "m3", "of either chamber at its least, with its hose")
+                .positive("pressures would have no bound")
+                .required(),
+            number("bulk_modulus", "Pa", "of the oil").positive("").or("1400000000"),
+            number("leakage", "m3/s/Pa", "from one chamber to the other").not_negative("").or("0"),
+            number("pressure", "Pa", "in both chambers at the start").or("0"),
+        ],
+    ),
+    kind(
+        "propeller",
+        "`thrust` · n · abs(n) along `axis`, and the torque −`torque` · n · abs(n) about it, on a body, n being the speed",
+        &[
+            reference("body", "name of the body"),
+            POINT,
+            vector("axis", "", "in the body's frame, of any length").or("[0, 0, 1]"),
+            strength("speed", "rad/s", "an input, or the rate of a joint").required(),
+            number("thrust", "N.s2", "negative for one that pushes when it turns backwards").required(),
+            number("torque", "N.m.s2", "").not_negative(LOSES).or("0"),
+        ],
+    ),
+    kind(
+        "drag",
+        "−½ `density` · `area` · `coefficient` · abs(v) v at a point of a body, v its velocity less that of the wind; \
+         output `NAME_air`",
+        &[
+            reference("body", "name of the body"),
+            POINT,
+            number("area", "m2", "").positive("").required(),
+            number("coefficient", "", "").not_negative(LOSES).required(),
+            number("density", "kg/m3", "of what it moves through").not_negative(LOSES).or("1.225"),
+            strengths("wind", "m/s", "").or("[0, 0, 0]"),
+        ],
+    ),
+    kind(
+        "wire",
+        "pulls with `stiffness` · (l − `free_length`) + `damping` · l̇ where two points are further apart than its \
+         free length, and never pushes",
+        &[FIRST, SECOND, STIFFNESS, DAMPING, LENGTH],
+    ),
+    kind(
+        "rope",
+        "a wire through several points, over pulleys without friction, which pulls alike at all of them by its whole \
+         length; links `NAME_1`, `NAME_2` and so on from each point to the next",
+        &[
+            tables_of(&FORCE_END, "points", "at least two tables of `body` and `point`").required(),
+            STIFFNESS,
+            DAMPING,
+            LENGTH,
+        ],
+    ),
+    kind(
+        "shaft",
+        "a torsional spring and damper between two joint coordinates: −`stiffness` · z − `damping` · ż along z = \
+         second − `ratio` · first − `free`; the energy is stored",
+        &[
+            table("first", &COUPLER_END, "a table of `joint` and, if it has several, `coordinate`").required(),
+            table("second", &COUPLER_END, "likewise").required(),
+            number("stiffness", "N.m/rad", "").positive("it would exert no torque").required(),
+            number("damping", "N.m.s/rad", "").not_negative(LOSES).or("0"),
+            number("ratio", "", "").or("1"),
+            number("free", "rad", "").or("0"),
+        ],
+    ),
+    kind(
+        "ball_spring",
+        "a torsional spring and damper about the Cardan angles of a spherical joint: a bushing at its place",
+        &[
+            ON_JOINT,
+            number("stiffness", "N.m/rad", "").not_negative("").or("0"),
+            number("damping", "N.m.s/rad", "").not_negative(LOSES).or("0"),
+            orientation("Euler parameters: how the second body is turned against the first where it is relaxed")
+                .or("as the first"),
+        ],
+    ),
+    kind(
+        "impact",
+        "the law of Hunt and Crossley at a limit: `stiffness` · δ^`exponent` · (1 + `damping` · δ̇) against what is \
+         beyond the limit by δ, and never a pull; that of Hertz without damping",
+        &[
+            ON_JOINT,
+            ON_COORDINATE,
+            number("limit", "rad or m", "").required(),
+            word("side", SIDES, "which way is blocked").required(),
+            number("stiffness", "N/m^exponent", "").positive("it would exert no force").required(),
+            number("exponent", "", "1.5 for a ball").positive("the force would jump").or("1.5"),
+            number("damping", "s/m or s/rad", "").not_negative(LOSES).or("0"),
+        ],
+    ),
+    kind(
+        "stribeck",
+        "−(`level` + (`static_level` − `level`) · exp(−(ẋ / `stribeck_rate`)²)) · tanh(ẋ / `rate`) − `viscous` · ẋ",
+        &[
+            ON_JOINT,
+            ON_COORDINATE,
+            LEVEL,
+            STATIC,
+            STRIBECK,
+            number("rate", "rad/s or m/s", "at which friction reaches 76 % of its level")
+                .positive("friction would jump where the velocity changes sign")
+                .required(),
+            VISCOUS,
+        ],
+    ),
+    kind(
+        "lugre",
+        "friction by bristles: ż = ẋ − `bristle_stiffness` · abs(ẋ) / g · z with g the level of Stribeck, and the force \
+         −`bristle_stiffness` · z − `bristle_damping` · ż − `viscous` · ẋ; state `NAME_bristles`",
+        &[
+            ON_JOINT,
+            ON_COORDINATE,
+            LEVEL,
+            STATIC,
+            STRIBECK,
+            number("bristle_stiffness", "N.m/rad or N/m", "").positive("nothing would hold").required(),
+            number("bristle_damping", "N.m.s/rad or N.s/m", "").not_negative(LOSES).or("0"),
+            VISCOUS,
+        ],
+    ),
+]);

@@ -1,0 +1,50 @@
+//! What ready elements are told. What they stand for is read with the forces and states of the model file.
+
+use super::numbers::{number, vector};
+use super::reader::Reader;
+use super::section::Section;
+use super::{references, tables};
+use crate::keys::Value;
+use crate::validate::Owner;
+use crate::{Element, Number};
+
+/// Reads all elements.
+pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Element> {
+    let sections = tables::each(reader, page, "element", Owner::Element).into_iter();
+    sections.filter_map(|(section, name)| element(reader, section, name)).collect()
+}
+
+fn element(reader: &mut Reader<'_>, mut section: Section<'_>, name: String) -> Option<Element> {
+    let kind = section.read_kind(reader, |_, _| None)?;
+    let mut numbers: Vec<(&'static str, Number)> = Vec::new();
+    for key in kind.keys {
+        match key.value {
+            Value::Reference if key.name == "joint" && kind.key("coordinate").is_some() => {
+                references::coordinate(reader, &section);
+            }
+            Value::Reference => {
+                references::index(reader, &section, key.name);
+            }
+            Value::Word(_) => {
+                section.word(reader, key.name);
+            }
+            Value::Number(_) | Value::Strength(_) => {
+                let given = section.find(reader, key.name).and_then(|item| number(reader, item));
+                numbers.extend(given.map(|number| (key.name, number)));
+            }
+            Value::Numbers(3, _) | Value::Strengths(_) => {
+                let given = section.find(reader, key.name).and_then(|item| vector::<3>(reader, item));
+                numbers.extend(given.into_iter().flatten().map(|number| (key.name, number)));
+            }
+            Value::Tables(_) => {
+                let Some(item) = section.find(reader, key.name) else { continue };
+                if item.tables(reader).len() < 2 {
+                    item.wrong_type(reader, "an array of at least two tables");
+                }
+            }
+            // Read where they stand in what the element stands for.
+            _ => _ = section.find(reader, key.name),
+        }
+    }
+    Some(Element { name, kind: kind.word, numbers })
+}
