@@ -30,7 +30,9 @@ const SOON: [f64; 11] = [0.0, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5
 /// The formula that has no value at a time and state, or that is the first to have none within a step of length h from
 /// there; inputs are set to these values. `None` as well if the model has no start, or the state is not one of it.
 pub fn lapse(model: &Model, inputs: &[(usize, f64)], (t, y): (f64, Option<&[f64]>), h: f64) -> Option<Lapse> {
-    let sites = model.sites();
+    // An output without a value ends no run.
+    let mut sites = model.sites();
+    sites.retain(|site| !site.owner.starts_with("output"));
     if sites.is_empty() {
         return None;
     }

@@ -1,9 +1,11 @@
-//! Kinks of laws, as a run counts them.
+//! Kinks of laws, as runs end steps there and count them.
 
 use crate::controllers;
 use crate::events::formula;
+use crate::scene::Scene;
+use crate::verdict::Outcome;
 use gyro_model::{ForceKind, Formula, Model, Number, Operation, Quaternion, Support, Vector};
-use gyro_runner::{End, Kink, Levels, Line, Seen};
+use gyro_runner::{End, Kink, Levels, Line, Seen, Stay};
 
 /// The kinks of a model's laws, each once: those that the state tells of, without what is seen between frames of a
 /// bushing or from driven bodies.
@@ -22,12 +24,22 @@ pub(crate) fn kinks(model: &Model) -> Vec<Kink> {
             gyro_model::Levels::Whole => Levels::Whole,
             gyro_model::Levels::Curve(curve) => Levels::At(model.curves[curve].corners()),
         };
-        let kink = Kink { of: formula(model, &told, see), at };
-        if !kinks.contains(&kink) {
+        let (words, of) = (format!("{} where {}", site.owner, kink.words), formula(model, &told, see));
+        if kinks.iter().all(|known: &Kink| (&known.of, &known.at) != (&of, &at)) {
+            let kink = Kink { words, of, at };
             kinks.push(kink);
         }
     }
     kinks
+}
+
+/// That the motion has stayed at a kink, if it has.
+pub(crate) fn stay(scene: &Scene, outcome: &Outcome) -> Option<String> {
+    let Stay { kink, t } = outcome.summary.stay?;
+    let place = &scene.start.kinks.get(kink)?.words;
+    Some(format!(
+        "From t = {t} s on the motion stays where a law is not smooth: {place}. Steps have not ended there any more."
+    ))
 }
 
 /// A formula up to one of its operations, with nothing in the place of what this does not need.

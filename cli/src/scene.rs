@@ -75,8 +75,7 @@ impl Scene {
         let assembled = model
             .assemble()
             .map_err(|e| Failure::Usage(format!("{}: {e}: {}", args.model.display(), e.help())))?;
-        let kinks = if approach.tolerance.is_none() { kinks::kinks(&model) } else { Vec::new() };
-        let start = Start { inputs, kinks, ..start(&model, &assembled) };
+        let start = Start { inputs, ..start(&model, &assembled) };
         let moved = assembled.moved;
         Ok(Self {
             page,
@@ -263,7 +262,7 @@ pub(crate) fn start(model: &Model, assembled: &gyro_model::Start) -> Start {
         observed_bodies: observed(model).into_iter().map(|(moving_body, _)| moving_body).collect(),
         controllers: controllers::controllers(model),
         watches: events::watches(model),
-        kinks: Vec::new(),
+        kinks: kinks::kinks(model),
         contacts: contacts::contacts(model),
         paths: paths::paths(model),
     }

@@ -8,7 +8,7 @@ use crate::args::{Engine, Precision};
 use crate::failure::Failure;
 use crate::scene::Scene;
 use crate::words::{count, number, table};
-use crate::{columns, eigenvalues, equilibrium, lapse, remarks};
+use crate::{columns, eigenvalues, equilibrium, kinks, lapse, remarks};
 use gyro_model::{Model, RowOwner};
 use gyro_runner::motion::Linear;
 use gyro_runner::{
@@ -199,7 +199,7 @@ pub(crate) fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<String> {
     let all =
         reasons.map(|reason| reason.to_string()).chain(passage_words(scene, &outcome.summary.statistics));
     let all = all.map(|words| format!("{words} --verify tells how far the result can be trusted."));
-    all.chain(lapse::of_outputs(scene, outcome)).collect()
+    all.chain(kinks::stay(scene, outcome)).chain(lapse::of_outputs(scene, outcome)).collect()
 }
 
 /// That steps of fixed length have passed singular poses, if they have.

@@ -46,7 +46,7 @@ pub use forecast::{Forecast, duration_words};
 pub use formula::{Formula, Operation};
 pub use grade::{Grade, Judgement, Measure, Reason, balance, judge};
 pub use input::{Between, Input, any_varies};
-pub use kink::{Kink, Levels};
+pub use kink::{Kink, Levels, Stay};
 pub use line::{End, Line};
 pub use offers::{Offers, listed};
 pub use path::Path;

@@ -56,10 +56,11 @@ impl Named<'_> {
         let mut reading =
             Reading { named: self, text, build: Build::default(), names: Vec::new(), kinks: Vec::new() };
         let last = reading.of(&term)?;
-        let Reading { build, names, kinks, .. } = reading;
+        let Reading { build, names, mut kinks, .. } = reading;
+        kinks.sort_by_key(|(start, _)| *start);
         let (operations, places) = build.up_to(last);
         let names = names.into_iter().map(|(name, place)| (name, places[place])).collect();
-        let moved = |kink: Kink| places[kink.of].map(|of| Kink { of, ..kink });
+        let moved = |(_, kink): (usize, Kink)| places[kink.of].map(|of| Kink { of, ..kink });
         let is_number = |kink: &Kink| matches!(operations[kink.of], Operation::Number(_));
         let kinks = kinks.into_iter().filter_map(moved).filter(|kink| !is_number(kink)).collect();
         Ok(Formula { text: text.to_owned(), operations, names, kinks })
@@ -84,7 +85,8 @@ struct Reading<'b, 'm> {
     build: Build,
     /// Names, each once, and the places of their values.
     names: Vec<(String, usize)>,
-    kinks: Vec<Kink>,
+    /// Kinks, each once, and where the text comes to them.
+    kinks: Vec<(usize, Kink)>,
 }
 
 impl Reading<'_, '_> {
@@ -243,7 +245,7 @@ impl Reading<'_, '_> {
         for kink in &formula.kinks {
             let within =
                 if kink.words.contains(WITHIN) { String::new() } else { format!("{WITHIN}`{name}`") };
-            self.note(format!("{}{within}", kink.words), places[kink.of], kink.at);
+            self.note(term, format!("{}{within}", kink.words), places[kink.of], kink.at);
         }
         Ok(places[places.len() - 1])
     }
@@ -313,24 +315,25 @@ const WITHIN: &str = " in formula ";
 /// Where formulas are not smooth.
 impl Reading<'_, '_> {
     /// A kink, once.
-    fn note(&mut self, words: String, of: usize, at: Levels) {
-        if self.kinks.iter().all(|kink| (kink.of, kink.at) != (of, at)) {
-            self.kinks.push(Kink { words, of, at });
+    fn note(&mut self, term: &Term, words: String, of: usize, at: Levels) {
+        if self.kinks.iter().all(|(_, kink)| (kink.of, kink.at) != (of, at)) {
+            self.kinks.push((term.span.start, Kink { words, of, at }));
         }
     }
 
     /// A kink where two terms are equal, in the order of the text.
     fn note_equal(&mut self, [x, y]: [&Term; 2], margin: usize) {
         let [first, second] = if x.span.start < y.span.start { [x, y] } else { [y, x] };
-        self.note(format!("{} = {}", self.written(first), self.written(second)), margin, Levels::Zero);
+        let words = format!("{} = {}", self.written(first), self.written(second));
+        self.note(first, words, margin, Levels::Zero);
     }
 
     /// The kinks of a function of operands at these places.
     fn note_kinks(&mut self, name: &str, operands: &[Term], places: &[usize]) {
-        let first = self.written(&operands[0]);
+        let (operand, first) = (&operands[0], self.written(&operands[0]));
         match (name, operands, places) {
-            ("abs" | "sign", _, &[x]) => self.note(format!("{first} = 0"), x, Levels::Zero),
-            ("floor", _, &[x]) => self.note(format!("{first} is whole"), x, Levels::Whole),
+            ("abs" | "sign", _, &[x]) => self.note(operand, format!("{first} = 0"), x, Levels::Zero),
+            ("floor", _, &[x]) => self.note(operand, format!("{first} is whole"), x, Levels::Whole),
             ("min" | "max", [a, b], &[x, y]) => {
                 let margin = self.build.difference(y, x);
                 self.note_equal([a, b], margin);
@@ -338,7 +341,7 @@ impl Reading<'_, '_> {
             ("mod", [_, divisor], &[x, y]) => {
                 let quotient = self.build.quotient(x, y);
                 let words = format!("{first} is a multiple of {}", self.written(divisor));
-                self.note(words, quotient, Levels::Whole);
+                self.note(operand, words, quotient, Levels::Whole);
             }
             (_, _, &[x]) => {
                 let curve = self.named.curves.iter().position(|curve| curve.name == name);
@@ -346,7 +349,7 @@ impl Reading<'_, '_> {
                 else {
                     return;
                 };
-                self.note(format!("{first} is at a corner of `{name}`"), x, Levels::Curve(curve));
+                self.note(operand, format!("{first} is at a corner of `{name}`"), x, Levels::Curve(curve));
             }
             _ => {}
         }

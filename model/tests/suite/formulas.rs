@@ -224,9 +224,7 @@ fn the_places_of_names_and_kinks_have_their_values() {
     let model = read("page.toml", PAGE).unwrap();
     let formula = model.formula("min(double, 3*x rate) + k*t + half").unwrap();
     let at = [0.3, -0.7, 1.9];
-    let of = |place: usize| {
-        value(&model, &Formula::smooth("", formula.operations[..=place].to_vec()), at)
-    };
+    let of = |place: usize| value(&model, &Formula::smooth("", formula.operations[..=place].to_vec()), at);
     let named = |name: &str| formula.names.iter().find(|(known, _)| known == name).unwrap().1.map(of);
     assert_eq!(formula.names.len(), 5);
     assert_eq!(named("double"), Some(2.0 * (0.3 + 0.5)));

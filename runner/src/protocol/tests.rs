@@ -2,7 +2,7 @@ use super::*;
 use crate::motion::Element;
 use crate::{
     BodySample, Controller, Coordinates, Correction, End, Input, Integrator, JointSample, Kink, Levels, Line,
-    Seen, Touch, Watch, What, When, Wiring,
+    Seen, Stay, Touch, Watch, What, When, Wiring,
 };
 use crate::{Formula, Operation, Path};
 use gyro_sim::Elementary;
@@ -57,6 +57,7 @@ fn a_request_comes_back_bit_by_bit() {
                 }],
                 kinks: vec![
                     Kink {
+                        words: "force `wire` where length = 1".to_owned(),
                         of: Formula(vec![Operation::Seen(Seen::DistanceRate(Line([
                             End { slot: None, point: [AWKWARD[0], 0.0, AWKWARD[1]] },
                             End { slot: Some(3), point: [0.0; 3] },
@@ -64,6 +65,7 @@ fn a_request_comes_back_bit_by_bit() {
                         at: Levels::At(vec![AWKWARD[1], AWKWARD[4]]),
                     },
                     Kink {
+                        words: "force `wire` where length = 1".to_owned(),
                         of: Formula(vec![Operation::Seen(Seen::Input(2, AWKWARD[3], -1.0))]),
                         at: Levels::Whole,
                     },
@@ -124,6 +126,7 @@ fn replies_come_back_bit_by_bit() {
         chart_switches: 32,
         smallest_pivot: Some(0.5),
         kinks_crossed: 9,
+        stay: Some(Stay { kink: 3, t: AWKWARD[2] }),
         ..Default::default()
     };
     let first = Passage { t: AWKWARD[0], pivot: AWKWARD[4], owner: Some(Owner::Driver(3)) };

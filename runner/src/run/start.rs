@@ -31,7 +31,7 @@ pub struct Start {
     pub controllers: Vec<Controller>,
     /// Events that are looked for, at most [`Watch::MOST`].
     pub watches: Vec<Watch>,
-    /// Kinks of laws, whose crossings are counted where steps have a fixed length.
+    /// Kinks of laws: steps under error control end there, others that go over them are counted.
     pub kinks: Vec<Kink>,
     /// Rigid stops and friction that sticks, at most [`Touch::MOST`].
     pub contacts: Vec<Touch>,
