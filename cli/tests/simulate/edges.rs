@@ -1,7 +1,9 @@
 //! Laws at their edges: where they have no value, and where they are not smooth.
 
-use crate::laws::ROTOR;
+use crate::laws::{ROTOR, end, run};
 use crate::support::{Folder, json, simulate};
+use serde_json::{Value, json};
+use std::f64::consts::PI;
 use std::fs;
 
 /// A slider of 2 kg along x without weight, that comes towards the wall.
@@ -23,7 +25,8 @@ const RUNS: [&[&str]; 6] = [
 fn failure(page: &str, options: &[&str]) -> String {
     let folder = Folder::new(&format!("edges-{:x}", page.len() * 31 + options.join("").len()));
     fs::write(folder.0.join("page.toml"), page).unwrap();
-    let output = simulate(&folder, &[&["page.toml", "--t-end", "3", "--json"], options].concat());
+    let end: &[&str] = if options.contains(&"--t-end") { &[] } else { &["--t-end", "3"] };
+    let output = simulate(&folder, &[&["page.toml", "--json"], options, end].concat());
     let words = String::from_utf8(output.stderr).unwrap();
     assert_eq!(
         output.status.code(),
@@ -163,4 +166,135 @@ fn distances_tell_of_kinks_as_coordinates_do() {
         run["kinks_crossed"].as_u64().unwrap()
     });
     assert!(counts[0] > 3 && counts[0] == counts[1], "{counts:?}");
+}
+
+const MOTOR: &str = "[[force]]\nname = \"law\"\nkind = \"motor\"\njoint = \"turn\"\n";
+
+/// All ways in which steps are controlled, with how far each may be off after 20 s.
+const CONTROLLED: [(&[&str], f64); 6] = [
+    (&["--integrator", "dop853", "--tolerance", "1e-9"], 5e-8),
+    (&["--integrator", "dop853", "--tolerance", "1e-12"], 5e-11),
+    (&["--integrator", "tsit5", "--tolerance", "1e-7"], 2e-5),
+    (&["--integrator", "rodas4", "--tolerance", "1e-7"], 1e-4),
+    (&["--coordinates", "maximal", "--integrator", "dop853", "--tolerance", "1e-9"], 5e-8),
+    (&["--engine", "assembled", "--integrator", "dop853", "--tolerance", "1e-9"], 5e-8),
+];
+
+/// The angle from 0.4 rad at 1.5 rad/s where ω is 2 above 0.1 rad and another below: half turns of either, in turn.
+fn by_halves(below: f64, t: f64) -> [f64; 2] {
+    let (x, v) = (0.3_f64, 1.5_f64);
+    let (speed, phase) = (v.hypot(2.0 * x), (2.0 * x).atan2(v));
+    let halves = [PI / 2.0, PI / below];
+    let since = (t + phase / 2.0) % (halves[0] + halves[1]);
+    let (omega, sign, since) =
+        if since < halves[0] { (2.0, 1.0, since) } else { (below, -1.0, since - halves[0]) };
+    let (sin, cos) = (omega * since).sin_cos();
+    [0.1 + sign * speed / omega * sin, sign * speed * cos]
+}
+
+/// How far a run is off, and its figures.
+fn off(page: &str, options: &[&str], expected: [f64; 2]) -> (f64, Value) {
+    let run = run(page, options, "20");
+    let [x, v, _] = end(&run);
+    ((x - expected[0]).abs().max((v - expected[1]).abs()), run)
+}
+
+#[test]
+fn steps_end_at_kinks_and_runs_are_as_exact_as_without() {
+    let curve =
+        "[[curve]]\nname = \"line\"\npoints = [[-2, 26.25], [0.1, 0], [3, -5.8]]\nbetween = \"linear\"\n";
+    let laws = [
+        ("", "-0.5*(14.5*(turn - 0.1) - 10.5*abs(turn - 0.1))"),
+        ("", "0.5*min(-4*(turn - 0.1), -25*(turn - 0.1))"),
+        ("", "-0.5*(turn - 0.1)*if(turn >= 0.1, 4, 25)"),
+        (curve, "line(turn)"),
+    ];
+    // Beside a stop that is never reached too.
+    let stop = "[[contact]]\nname = \"far\"\njoint = \"turn\"\nupper = 9\n";
+    for (rest, law) in laws {
+        for (options, bound) in CONTROLLED {
+            let page = format!("{ROTOR}{rest}{MOTOR}value = {law:?}\n");
+            let (error, run) = off(&page, options, by_halves(5.0, 20.0));
+            assert!(error < bound, "{law} {options:?}: {error}");
+            assert_eq!(run["kinks_crossed"].as_u64(), Some(18), "{law} {options:?}: {run}");
+            assert_eq!(run["warnings"].as_array().unwrap().len(), 0);
+        }
+        let (error, run) = off(
+            &format!("{ROTOR}{rest}{stop}{MOTOR}value = {law:?}\n"),
+            CONTROLLED[0].0,
+            by_halves(5.0, 20.0),
+        );
+        assert!(error < CONTROLLED[0].1 && run["kinks_crossed"].as_u64() == Some(18), "{law}: {error} {run}");
+    }
+    let smooth = format!("{ROTOR}{MOTOR}value = \"-2*(turn - 0.1)\"\n");
+    for (options, bound) in CONTROLLED {
+        let (error, run) = off(&smooth, options, by_halves(2.0, 20.0));
+        assert!(error < bound && run["kinks_crossed"].is_null(), "{options:?}: {error}");
+    }
+}
+
+#[test]
+fn steps_that_end_at_kinks_are_fewer() {
+    // The root of a square has the same kink, but none that the text names.
+    let page = |size: &str| format!("{ROTOR}{MOTOR}value = \"-7.25*(turn - 0.1) + 5.25*{size}\"\n");
+    for (options, bound) in [CONTROLLED[0], CONTROLLED[1], CONTROLLED[2], CONTROLLED[4], CONTROLLED[5]] {
+        let [named, hidden] = ["abs(turn - 0.1)", "sqrt((turn - 0.1)^2)"].map(|size| {
+            let (error, run) = off(&page(size), options, by_halves(5.0, 20.0));
+            assert!(error < bound, "{size} {options:?}: {error}");
+            ["rejected_steps", "steps", "evaluations"].map(|key| run[key].as_u64().unwrap())
+        });
+        assert!(2 * named[0] < hidden[0], "{options:?}: {named:?} {hidden:?}");
+        assert!(named[1] < hidden[1] && named[2] < hidden[2], "{options:?}: {named:?} {hidden:?}");
+    }
+}
+
+#[test]
+fn steps_end_at_jumps_in_space_and_in_time() {
+    // Parabolas on either side, passed at the same speed each time.
+    let speed = (1.5_f64 * 1.5 + 2.0 * 0.8 * 0.4).sqrt();
+    let half = 2.0 * speed / 0.8;
+    let since = 20.0 + (speed - 1.5) / 0.8;
+    let (sign, since) = (if (since / half).floor() % 2.0 == 0.0 { 1.0 } else { -1.0 }, since % half);
+    let expected = [sign * (speed - 0.4 * since) * since, sign * (speed - 0.8 * since)];
+    let page = format!("{ROTOR}{MOTOR}value = \"-0.4*sign(turn)\"\n");
+    for (options, bound) in CONTROLLED {
+        let (error, run) = off(&page, options, expected);
+        assert!(error < bound, "{options:?}: {error}");
+        assert_eq!(run["kinks_crossed"].as_u64(), Some((20.0 / half) as u64), "{options:?}: {run}");
+    }
+    // Two radians per second² more each second.
+    let page = format!("{ROTOR}{MOTOR}value = \"floor(t)\"\n");
+    let rates = (0..20).map(|k| 2.0 * f64::from(k));
+    let ahead = (0..20).map(|k| 2.0 * f64::from(k) * (19.5 - f64::from(k)));
+    let expected = [0.4 + 20.0 * 1.5 + ahead.sum::<f64>(), 1.5 + rates.sum::<f64>()];
+    for (options, bound) in CONTROLLED {
+        let (error, run) = off(&page, options, expected);
+        assert!(error < 1e3 * bound, "{options:?}: {error}");
+        assert!(run["kinks_crossed"].as_u64().unwrap() >= 19, "{options:?}: {run}");
+    }
+}
+
+#[test]
+fn motions_that_stay_at_kinks_end_in_bounded_time() {
+    // Friction by a sign, that would hold.
+    let page = format!("{ROTOR}{MOTOR}value = \"-0.4*sign(turn rate) - 0.1*turn\"\n");
+    for options in [CONTROLLED[0].0, CONTROLLED[2].0, CONTROLLED[5].0] {
+        let words = failure(&page, &[options, &["--t-end", "20"]].concat());
+        let expected = "the motion stays where a law is not smooth: force `law` where turn rate = 0";
+        assert!(words.contains(expected) && words.contains("[[contact]]"), "{options:?}: {words}");
+    }
+    // What is within reach is computed all the same, and told of.
+    let run = run(&page, CONTROLLED[0].0, "1.457");
+    let warning = run["warnings"][0].as_str().unwrap();
+    assert!(warning.contains("on the motion stays where a law is not smooth: force `law`"), "{warning}");
+    assert!(end(&run)[1].abs() < 1e-8, "{run}");
+    // At rest nothing is crossed, and where it is approached for ever neither.
+    let still = ROTOR.replace("rate = 1.5", "rate = 0");
+    for page in [
+        format!("{still}{MOTOR}value = \"-0.05*abs(turn rate)*turn rate - abs(turn - 0.4)\"\n"),
+        format!("{ROTOR}{MOTOR}value = \"-abs(turn rate)*turn rate - turn rate\"\n"),
+    ] {
+        let run = crate::laws::run(&page, CONTROLLED[0].0, "1000");
+        assert!(run["steps"].as_u64().unwrap() < 1000 && run["warnings"] == json!([]), "{run}");
+    }
 }

@@ -21,8 +21,8 @@ const ROUNDINGS: f64 = 32.0;
 /// So many attempts of one step end early for kinks; the rest is left to error control.
 const MOST_ATTEMPTS: u32 = 12;
 
-/// A motion that crosses a kink so often within this part of the run stays there.
-const CROSSINGS: u32 = 32;
+/// Where so many steps within this part of the run have ended at one kink, the motion stays there.
+const ENDS: u32 = 64;
 const BRIEF: f64 = 1e-3;
 
 /// After so many further steps it is asked whether the rest of the run is within reach.
@@ -35,14 +35,14 @@ pub(super) struct Laws {
     sees_outputs: bool,
     values: Vec<f64>,
     places: Vec<Option<f64>>,
-    /// When each was first crossed of late, s, and how often since.
-    crossings: Vec<(f64, u32)>,
+    /// When a step last began to end at each, s, and how many have since.
+    ends: Vec<(f64, u32)>,
     /// Those at which the motion stays: no step ends there any more.
     is_stayed_at: Vec<bool>,
     /// A time and how many steps had been tried, since a motion has stayed at a kink.
     stays_since: Option<(f64, u64)>,
-    /// When the kink comes that the last step has led to, s.
-    ahead: Option<f64>,
+    /// The kink that the last step has led to, and when it comes, s.
+    ahead: Option<(usize, f64)>,
 }
 
 impl Laws {
@@ -53,7 +53,7 @@ impl Laws {
             sees_outputs: kinks.iter().any(|kink| kink.of.0.iter().any(is_output)),
             values: Vec::new(),
             places: vec![None; kinks.len()],
-            crossings: vec![(0.0, 0); kinks.len()],
+            ends: vec![(0.0, 0); kinks.len()],
             is_stayed_at: vec![false; kinks.len()],
             stays_since: None,
             ahead: None,
@@ -64,14 +64,12 @@ impl Laws {
         self.kinks.is_empty()
     }
 
-    /// Takes the values that the arguments have now; which kinks have been crossed since the last ones.
-    fn pass(&mut self, values: Vec<f64>) -> Vec<usize> {
-        let mut passed = Vec::new();
-        for (k, place) in self.places.iter_mut().enumerate() {
-            let Some(now) = self.kinks[k].at.place(values[k]) else { continue };
-            if place.replace(now).is_some_and(|before| before != now) {
-                passed.push(k);
-            }
+    /// Takes the values that the arguments have now; how many kinks have been crossed since the last ones.
+    fn pass(&mut self, values: Vec<f64>) -> u64 {
+        let mut passed = 0;
+        for ((kink, place), value) in self.kinks.iter().zip(&mut self.places).zip(&values) {
+            let Some(now) = kink.at.place(*value) else { continue };
+            passed += u64::from(place.replace(now).is_some_and(|before| before != now));
         }
         self.values = values;
         passed
@@ -88,14 +86,14 @@ impl Laws {
         all.filter_map(crossed).collect()
     }
 
-    /// Notes that a kink is crossed; whether the motion stays there from now on.
+    /// Notes that a step has ended at a kink; whether the motion stays there from now on.
     fn note(&mut self, k: usize, t: f64, t_end: f64) -> bool {
-        let (since, count) = &mut self.crossings[k];
+        let (since, count) = &mut self.ends[k];
         if t - *since > BRIEF * t_end {
             (*since, *count) = (t, 0);
         }
         *count += 1;
-        *count >= CROSSINGS && !std::mem::replace(&mut self.is_stayed_at[k], true)
+        *count >= ENDS && !std::mem::replace(&mut self.is_stayed_at[k], true)
     }
 }
 
@@ -158,14 +156,11 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
     }
 
     /// Counts the kinks between the state that was last looked at, at this time, and the one before it.
-    pub(super) fn count_kinks(&mut self, t: f64) -> Vec<usize> {
-        if self.laws.is_empty() {
-            return Vec::new();
+    pub(super) fn count_kinks(&mut self, t: f64) {
+        if !self.laws.is_empty() {
+            let Parts { mut sight, laws, y, .. } = self.parts();
+            self.summary.kinks_crossed += laws.pass(sight.values(&laws.kinks, t, y));
         }
-        let Parts { mut sight, laws, y, .. } = self.parts();
-        let passed = laws.pass(sight.values(&laws.kinks, t, y));
-        self.summary.kinks_crossed += passed.len() as u64;
-        passed
     }
 
     /// One step under error control, not beyond a time, nor beyond a kink unless it is a short one across it.
@@ -175,17 +170,19 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
         }
         let start = self.motion.time();
         self.look_at(start)?;
-        for k in self.count_kinks(start) {
-            if self.laws.note(k, start, t_end) {
-                self.summary.stay.get_or_insert(Stay { kink: k, t: start });
-                self.laws.stays_since.get_or_insert((start, self.motion.statistics().tried()));
-            }
+        self.count_kinks(start);
+        let ahead = self.laws.ahead.take();
+        if let Some((kink, _)) = ahead
+            && self.laws.note(kink, start, t_end)
+        {
+            self.summary.stay.get_or_insert(Stay { kink, t: start });
+            self.laws.stays_since.get_or_insert((start, self.motion.statistics().tried()));
         }
         self.refuse_to_stay(start, t_end)?;
-        let least = ROUNDINGS * <M::Scalar as Real>::EPSILON.to_f64() * start.abs();
+        let least = ROUNDINGS * <M::Scalar as Real>::EPSILON.to_f64() * stop.abs();
         let Parts { mut sight, motion, laws, y, sides } = self.parts();
-        let across =
-            laws.ahead.take().filter(|kink| *kink > start).map(|kink| kink + (kink - start).max(least));
+        let across = ahead.filter(|(kink, at)| *at > start && !laws.is_stayed_at[*kink]);
+        let across = across.map(|(_, at)| at + (at - start).max(least));
         let (mechanism, mut attempts) = (sight.mechanism, 0);
         let look = &mut |attempt: &mut dyn Attempt<M>| {
             let [from, to] = attempt.span();
@@ -200,15 +197,14 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
                 return None;
             }
             attempts += 1;
-            let mut first = 1.0_f64;
-            for Crossed { kink: k, level, value } in crossed {
-                let kink = std::slice::from_ref(&laws.kinks[k]);
-                let beyond = |theta: f64| Ok::<_, Infallible>(values(theta, kink, attempt)[0] - level);
-                let Ok(theta) = events::root(beyond, (0.0, laws.values[k] - level), (1.0, value - level));
-                first = first.min(theta);
-            }
-            let way = first * (to - from);
-            laws.ahead = Some(from + way);
+            let places = crossed.into_iter().map(|Crossed { kink, level, value }| {
+                let of = std::slice::from_ref(&laws.kinks[kink]);
+                let beyond = |theta: f64| Ok::<_, Infallible>(values(theta, of, attempt)[0] - level);
+                let Ok(place) = events::root(beyond, (0.0, laws.values[kink] - level), (1.0, value - level));
+                (kink, place * (to - from))
+            });
+            let (kink, way) = places.min_by(|a, b| a.1.total_cmp(&b.1))?;
+            laws.ahead = Some((kink, from + way));
             Some(if way > 2.0 * least { from + way * (1.0 - MARGIN) } else { from + 4.0 * least })
         };
         let outcome = motion.step_towards(mechanism, across.map_or(stop, |across| across.min(stop)), look);
