@@ -39,8 +39,10 @@ pub(super) struct Laws {
     ends: Vec<(f64, u32)>,
     /// Those at which the motion stays: no step ends there any more.
     is_stayed_at: Vec<bool>,
-    /// A time and how many steps had been tried, since a motion has stayed at a kink.
-    stays_since: Option<(f64, u64)>,
+    /// The first of them.
+    stay: Option<Stay>,
+    /// A time since then and how many steps had been tried.
+    since: (f64, u64),
     /// The kink that the last step has led to, and when it comes, s.
     ahead: Option<(usize, f64)>,
 }
@@ -55,7 +57,8 @@ impl Laws {
             places: vec![None; kinks.len()],
             ends: vec![(0.0, 0); kinks.len()],
             is_stayed_at: vec![false; kinks.len()],
-            stays_since: None,
+            stay: None,
+            since: (0.0, 0),
             ahead: None,
         }
     }
@@ -174,11 +177,12 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
         let ahead = self.laws.ahead.take();
         if let Some((kink, _)) = ahead
             && self.laws.note(kink, start, t_end)
+            && self.laws.stay.is_none()
         {
-            self.summary.stay.get_or_insert(Stay { kink, t: start });
-            self.laws.stays_since.get_or_insert((start, self.motion.statistics().tried()));
+            self.laws.stay = Some(Stay { kink, t: start });
+            self.laws.since = (start, self.motion.statistics().tried());
         }
-        self.refuse_to_stay(start, t_end)?;
+        self.refuse_to_crawl(start, t_end)?;
         let least = ROUNDINGS * <M::Scalar as Real>::EPSILON.to_f64() * stop.abs();
         let Parts { mut sight, motion, laws, y, sides } = self.parts();
         let across = ahead.filter(|(kink, at)| *at > start && !laws.is_stayed_at[*kink]);
@@ -211,26 +215,26 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
         Ok(outcome?)
     }
 
-    /// Fails where a motion stays at kinks, in steps so short that the rest of the run is out of reach.
-    fn refuse_to_stay(&mut self, t: f64, t_end: f64) -> Result<(), Halt> {
-        let (Some((since, before)), Some(stay)) = (self.laws.stays_since, self.summary.stay) else {
-            return Ok(());
-        };
+    /// Notes that a motion which stays at kinks goes on in short steps; fails where that takes the rest of the run out
+    /// of reach.
+    fn refuse_to_crawl(&mut self, t: f64, t_end: f64) -> Result<(), Halt> {
+        let Laws { stay, since: (since, before), .. } = self.laws;
         let tried = self.motion.statistics().tried();
-        if tried < before + STEPS {
+        let Some(stay) = stay.filter(|_| tried >= before + STEPS) else { return Ok(()) };
+        self.laws.since = (t, tried);
+        let taken = (tried - before) as f64;
+        if t - since < BRIEF * t_end {
+            self.summary.stay.get_or_insert(stay);
+        }
+        if (t_end - t) * taken <= (t - since) * self.most_steps.saturating_sub(tried) as f64 {
             return Ok(());
         }
-        self.laws.stays_since = Some((t, tried));
-        let [taken, left] = [tried - before, self.most_steps.saturating_sub(tried)].map(|n| n as f64);
-        if (t_end - t) * taken <= (t - since) * left {
-            return Ok(());
-        }
-        let place = &self.laws.kinks[stay.kink].words;
         Err(Halt::Law(format!(
-            "since t = {} s the motion stays where a law is not smooth: {place}; at t = {t} s it goes on in steps of {:.1e} s, \
-             too short for its budget. Friction that holds is a [[contact]]; a law without a jump, by tanh or step, needs \
-             no such steps",
+            "since t = {} s the motion stays where a law is not smooth: {}; at t = {t} s it goes on in steps of {:.1e} s, too \
+             short for its budget. Friction that holds is a [[contact]]; a law without a jump, by tanh or step, needs no such \
+             steps",
             stay.t,
+            self.laws.kinks[stay.kink].words,
             (t - since) / taken
         )))
     }
