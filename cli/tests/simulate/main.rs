@@ -67,6 +67,7 @@ fn json_is_one_object_and_both_engines_give_the_same() {
             "integrator",
             "jacobians",
             "joints",
+            "kinks_crossed",
             "method",
             "model",
             "norm_violation",
