@@ -2,10 +2,8 @@
 
 use crate::controllers;
 use crate::events::formula;
-use crate::scene::Scene;
-use crate::verdict::Outcome;
 use gyro_model::{ForceKind, Formula, Model, Number, Operation, Quaternion, Support, Vector};
-use gyro_runner::{End, Kink, Levels, Line, Seen, Stay};
+use gyro_runner::{End, Kink, Levels, Line, Seen, Stay, Summary};
 
 /// The kinks of a model's laws, each once: those that the state tells of, without what is seen between frames of a
 /// bushing or from driven bodies.
@@ -34,9 +32,9 @@ pub(crate) fn kinks(model: &Model) -> Vec<Kink> {
 }
 
 /// That the motion has stayed at a kink, if it has.
-pub(crate) fn stay(scene: &Scene, outcome: &Outcome) -> Option<String> {
-    let Stay { kink, t } = outcome.summary.stay?;
-    let place = &scene.start.kinks.get(kink)?.words;
+pub(crate) fn stay(kinks: &[Kink], summary: &Summary) -> Option<String> {
+    let Stay { kink, t } = summary.stay?;
+    let place = &kinks.get(kink)?.words;
     Some(format!(
         "From t = {t} s on the motion stays where a law is not smooth: {place}. Steps have not ended there any more."
     ))

@@ -2,18 +2,24 @@
 
 use crate::failure::Failure;
 use crate::scene::Scene;
-use crate::verdict::Outcome;
 use crate::words::number;
+use gyro_runner::Sample;
 
 /// Digits of what a formula sees.
 const DIGITS: usize = 12;
 
-/// A failed run where a formula has no value, or has none soon after, says which formula that is.
-pub(crate) fn with_formula(scene: &Scene, outcome: &Outcome, failure: Failure) -> Failure {
+/// A failed run where a formula has no value, or has none soon after, says which formula that is; the last state is
+/// that before it failed.
+pub(crate) fn with_formula(
+    scene: &Scene,
+    samples: &[Sample],
+    last: Option<&(f64, Vec<f64>)>,
+    failure: Failure,
+) -> Failure {
     let Failure::Run(words) = &failure else { return failure };
-    let (t, state) = outcome.stopped.as_ref().map_or((0.0, None), |(t, y)| (*t, Some(y.as_slice())));
+    let (t, state) = last.map_or((0.0, None), |(t, y)| (*t, Some(y.as_slice())));
     let given = scene.start.inputs.iter().map(|input| (input.index, input.at(t)));
-    let held = outcome.samples.last().map_or(&[][..], |sample| &sample.controlled);
+    let held = samples.last().map_or(&[][..], |sample| &sample.controlled);
     let set =
         scene.start.controllers.iter().flat_map(|controller| controller.inputs.iter().map(|input| input.0));
     let inputs: Vec<(usize, f64)> = given.chain(set.zip(held.iter().copied())).collect();
@@ -33,12 +39,12 @@ pub(crate) fn with_formula(scene: &Scene, outcome: &Outcome, failure: Failure) -
 }
 
 /// What there is to say of outputs whose formulas have had no value: a run goes on all the same.
-pub(crate) fn of_outputs(scene: &Scene, outcome: &Outcome) -> Vec<String> {
+pub(crate) fn of_outputs(scene: &Scene, samples: &[Sample]) -> Vec<String> {
     let mut place = 0;
     let mut said = Vec::new();
     for output in &scene.model.outputs {
         let first = || {
-            let mut samples = outcome.samples.iter();
+            let mut samples = samples.iter();
             samples.find(|sample| sample.outputs.get(place).is_some_and(|value| !value.is_finite()))
         };
         if let Some((formula, sample)) = output.kind.formula().and_then(|formula| Some((formula, first()?))) {

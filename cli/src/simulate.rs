@@ -162,7 +162,7 @@ fn followed(
     progress.finish();
     outcome.summary = summary.map_err(|failure| {
         let failure = with_link(scene, outcome, failure);
-        lapse::with_formula(scene, outcome, failure)
+        lapse::with_formula(scene, &outcome.samples, outcome.stopped.as_ref(), failure)
     })?;
     Ok(())
 }

@@ -199,7 +199,8 @@ pub(crate) fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<String> {
     let all =
         reasons.map(|reason| reason.to_string()).chain(passage_words(scene, &outcome.summary.statistics));
     let all = all.map(|words| format!("{words} --verify tells how far the result can be trusted."));
-    all.chain(kinks::stay(scene, outcome)).chain(lapse::of_outputs(scene, outcome)).collect()
+    let stay = kinks::stay(&scene.start.kinks, &outcome.summary);
+    all.chain(stay).chain(lapse::of_outputs(scene, &outcome.samples)).collect()
 }
 
 /// That steps of fixed length have passed singular poses, if they have.
