@@ -4,7 +4,7 @@
 use crate::scene::{self, Scene};
 use crate::words::number;
 use gyro_assembled::{Dense, Precision, quick_look};
-use gyro_model::{Model, Number, Rational};
+use gyro_model::{Attraction, Model, Number, Rational};
 use gyro_runner::{Approach, Event, Integrator, Sample, Settings, Start, any_varies, differences};
 use gyro_sim::{Dynamics, Mechanism};
 
@@ -59,10 +59,21 @@ fn is_balanced(scene: &Scene) -> Option<bool> {
     let mut slope = y.clone();
     dense.derivative(0.0, &y, &mut slope);
     let slope: &[f64] = slope.as_ref();
-    let gravity = scene.model.values(&scene.model.gravity).iter().map(|g| g * g).sum::<f64>().sqrt();
+    let gravity = largest_gravity(&scene.model, positions);
     let limit = ROUNDING * (1.0 + gravity) * (1.0 + 1.0 / scene.model.size());
     let accelerations = &slope[positions.len()..positions.len() + velocities.len()];
     Some(accelerations.iter().all(|a| a.abs() <= limit))
+}
+
+/// The largest acceleration of gravity at the mass centre of a body, m/s².
+fn largest_gravity(model: &Model, positions: &[f64]) -> f64 {
+    let size = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let Some(Attraction { mu, centre }) = &model.attraction else {
+        return size(model.values(&model.gravity));
+    };
+    let (mu, centre) = (model.value(mu), model.values(centre));
+    let distance = |q: &[f64]| size([q[0] - centre[0], q[1] - centre[1], q[2] - centre[2]]);
+    positions.chunks_exact(7).map(|q| mu / distance(q).powi(2)).fold(0.0, f64::max)
 }
 
 /// How far the mechanism goes when a joint of it is given a small rate, if that is far.

@@ -4,7 +4,7 @@ use crate::args::EventSetting;
 use crate::controllers::seen;
 use crate::failure::Failure;
 use crate::words::{count, number, table};
-use gyro_model::{Direction, Event, Model, Number, Spline, to_f64};
+use gyro_model::{Direction, Event, Model, Number, Spline};
 use gyro_program::elementary::Function;
 use gyro_runner::{Formula, Occurrence, Operation, Seen, Watch, What};
 use gyro_sim::Elementary;
@@ -36,7 +36,7 @@ pub(crate) fn add(model: &mut Model, given: &[EventSetting]) -> Result<(), Failu
 /// What a run of a model looks for.
 pub(crate) fn watches(model: &Model) -> Vec<Watch> {
     let one = |event: &Event| Watch {
-        of: formula(model, &event.of, |what| seen(model, what)),
+        of: formula(model, &event.of),
         level: model.value(&event.level),
         rising: event.direction != Direction::Falling,
         falling: event.direction != Direction::Rising,
@@ -45,19 +45,21 @@ pub(crate) fn watches(model: &Model) -> Vec<Watch> {
     model.events.iter().map(one).collect()
 }
 
-/// A formula in numbers, of what it sees.
-pub(crate) fn formula(
+/// A formula in numbers.
+pub(crate) fn formula(model: &Model, of: &gyro_model::Formula) -> Formula {
+    formula_of(model, of, |number| Operation::Number(model.value(number)), |what| seen(model, what))
+}
+
+/// A formula of these numbers, and of what it sees.
+pub(crate) fn formula_of(
     model: &Model,
     of: &gyro_model::Formula,
+    numbers: impl Fn(&Number) -> Operation,
     see: impl Fn(gyro_model::Seen) -> Seen,
 ) -> Formula {
     use gyro_model::Operation as Of;
     let one = |operation: &Of| match operation {
-        Of::Number(Number::Input { index, negated }) => {
-            let default = to_f64(&model.inputs[*index].value);
-            Operation::Seen(Seen::Input(*index, default, if *negated { -1.0 } else { 1.0 }))
-        }
-        Of::Number(number) => Operation::Number(model.value(number)),
+        Of::Number(number) => numbers(number),
         Of::Seen(what) => Operation::Seen(see(*what)),
         Of::Negative(a) => Operation::Negative(*a),
         Of::Sum(a, b) => Operation::Sum(*a, *b),

@@ -1,8 +1,8 @@
 //! Kinks of laws, as runs end steps there and count them.
 
 use crate::controllers;
-use crate::events::formula;
-use gyro_model::{ForceKind, Formula, Model, Number, Operation, Quaternion, Support, Vector};
+use crate::events::formula_of;
+use gyro_model::{ForceKind, Formula, Model, Number, Operation, Quaternion, Support, Vector, to_f64};
 use gyro_runner::{End, Kink, Levels, Line, Seen, Stay, Summary};
 
 /// The kinks of a model's laws, each once: those that the state tells of, without what is seen between frames of a
@@ -22,7 +22,15 @@ pub(crate) fn kinks(model: &Model) -> Vec<Kink> {
             gyro_model::Levels::Whole => Levels::Whole,
             gyro_model::Levels::Curve(curve) => Levels::At(model.curves[curve].corners()),
         };
-        let (words, of) = (format!("{} where {}", site.owner, kink.words), formula(model, &told, see));
+        let numbers = |number: &Number| match number {
+            Number::Input { index, negated } => {
+                let default = to_f64(&model.inputs[*index].value);
+                gyro_runner::Operation::Seen(Seen::Input(*index, default, if *negated { -1.0 } else { 1.0 }))
+            }
+            number => gyro_runner::Operation::Number(model.value(number)),
+        };
+        let of = formula_of(model, &told, numbers, see);
+        let words = format!("{} where {}", site.owner, kink.words);
         if kinks.iter().all(|known: &Kink| (&known.of, &known.at) != (&of, &at)) {
             let kink = Kink { words, of, at };
             kinks.push(kink);

@@ -4,6 +4,8 @@
 
 use crate::args::{Engine, InputSetting, SimulateArgs};
 use crate::columns;
+use crate::controllers::seen;
+use crate::events;
 use crate::failure::Failure;
 use crate::in_process;
 use crate::invocation::with_suggestion;
@@ -17,7 +19,7 @@ use gyro_codegen::{Effort, Functions};
 use gyro_jit::{Compiled, Library, Sizes};
 use gyro_model::{Model, OutputKind};
 use gyro_runner::motion::Linear;
-use gyro_runner::{Event, JointSample, Start};
+use gyro_runner::{Event, JointSample, Seen, Start};
 use gyro_sim::JointPlace;
 use gyro_verifier::Depth;
 use serde_json::{Value, json};
@@ -223,6 +225,27 @@ impl Run {
             }
         }
         Some([x, u].concat())
+    }
+
+    /// The values of a formula at all samples, of time, parameters, and of what events may see.
+    ///
+    /// # Errors
+    /// It has mistakes.
+    pub fn formula(&self, text: &str) -> Result<Vec<f64>, Failure> {
+        let model = &self.scene.model;
+        let formula = events::formula(model, &model.formula(text).map_err(Failure::Usage)?);
+        let columns = self.columns();
+        let values =
+            |name: &str| columns.iter().find(|column| column.name == name).map(|column| &column.values);
+        let visible = model.visible().into_iter().map(|(name, what)| (seen(model, what), values(&name)));
+        let visible: Vec<_> = visible.chain([(Seen::Time, values("t"))]).collect();
+        let value = |sample: usize| {
+            formula.value(&|what: Seen| {
+                let found = visible.iter().find(|(known, _)| *known == what);
+                found.and_then(|(_, values)| values.as_ref()?.get(sample).copied()).unwrap_or(f64::NAN)
+            })
+        };
+        Ok((0..self.outcome.samples.len()).map(value).collect())
     }
 
     /// What the run was and what it cost, as with `--json`.

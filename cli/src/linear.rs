@@ -59,6 +59,7 @@ impl Linear {
     pub(crate) fn is_about(model: &Model) -> bool {
         let kinds = [JointKind::Revolute, JointKind::Spherical, JointKind::Fixed];
         model.forces.is_empty()
+            && model.attraction.is_none()
             && model.couplers.is_empty()
             && !model.is_driven()
             && model.joints.iter().all(|joint| kinds.contains(&joint.kind))

@@ -2,6 +2,7 @@
 
 mod describe;
 mod efforts;
+mod laws;
 mod live;
 pub(crate) mod meshes;
 
@@ -67,9 +68,7 @@ fn written(args: &ShowArgs) -> Result<Written, Failure> {
     let names = names(&scenes, &args.compare);
     let live = match (args.live, scenes.first_mut()) {
         (true, Some(scene)) => {
-            if args.reactions {
-                add_reactions(scene);
-            }
+            told(scene, args.reactions);
             Some(live::live(scene)?)
         }
         _ => None,
@@ -78,9 +77,7 @@ fn written(args: &ShowArgs) -> Result<Written, Failure> {
     let mut incomplete = None;
     let mut n_samples = 0;
     for ((mut scene, name), meshes) in scenes.into_iter().zip(names).zip(looks) {
-        if args.reactions {
-            add_reactions(&mut scene);
-        }
+        told(&mut scene, args.reactions);
         let (outcome, failure) = outcome(&mut scene)?;
         incomplete = incomplete.or(failure);
         n_samples += outcome.samples.len();
@@ -140,20 +137,26 @@ fn names(scenes: &[Scene], changes: &[Change]) -> Vec<String> {
     scenes.iter().map(name).collect()
 }
 
-/// Asks for the reaction of each joint that has none among the outputs, in what is run and in what code is made of.
-fn add_reactions(scene: &mut Scene) {
-    let add = |model: &mut Model| {
-        for joint in 0..model.joints.len() {
-            let is_it =
-                |output: &Output| matches!(output.kind, OutputKind::Reaction { joint: j } if j == joint);
-            if !model.outputs.iter().any(is_it) {
-                let name = format!("reaction_of_{}", model.joints[joint].name);
-                model.outputs.push(Output { name, kind: OutputKind::Reaction { joint } });
-            }
+/// Has a run tell what arrows need, in what is run and in what code is made of: what formulas of forces give and, if
+/// they are asked for, reactions.
+fn told(scene: &mut Scene, has_reactions: bool) {
+    for model in [&mut scene.model, &mut scene.page] {
+        laws::with_laws(model);
+        if has_reactions {
+            add_reactions(model);
         }
-    };
-    add(&mut scene.model);
-    add(&mut scene.page);
+    }
+}
+
+/// Asks for the reaction of each joint that has none among the outputs.
+fn add_reactions(model: &mut Model) {
+    for joint in 0..model.joints.len() {
+        let is_it = |output: &Output| matches!(output.kind, OutputKind::Reaction { joint: j } if j == joint);
+        if !model.outputs.iter().any(is_it) {
+            let name = format!("reaction_of_{}", model.joints[joint].name);
+            model.outputs.push(Output { name, kind: OutputKind::Reaction { joint } });
+        }
+    }
 }
 
 /// Runs a scene with all its bodies observed, free ones first as tables expect; beside what it gave why it ended early.

@@ -43,8 +43,10 @@ impl Changes<'_> {
     /// Gravity, friction, forces, outputs.
     fn without_elements(&mut self) {
         let model = self.model;
-        if !are_zero(&model.gravity) {
-            self.add("without gravity".to_owned(), |model| model.gravity = zeros());
+        if !are_zero(&model.gravity) || model.attraction.is_some() {
+            self.add("without gravity".to_owned(), |model| {
+                (model.gravity, model.attraction) = (zeros(), None);
+            });
         }
         for (index, joint) in model.joints.iter().enumerate().filter(|(_, joint)| !joint.damping.is_zero()) {
             self.add(format!("without the friction of `{}`", joint.name), |model| {

@@ -1,7 +1,7 @@
 //! `cargo xtask show`: pages are written whole, from disk alone, and never over what somebody else wrote.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -52,6 +52,35 @@ fn a_run_of_another_model_file_is_shown_over_the_first() {
     assert_eq!(names, ["pendulum", "compound-pendulum"]);
     assert_eq!(scenes[0]["mechanism"]["joints"][0]["ends"][1]["point"][1], 0.3);
     assert_eq!(scenes[1]["mechanism"]["name"], "compound_pendulum");
+}
+
+#[test]
+fn what_formulas_of_forces_give_is_told() {
+    let folder = Folder::new("laws");
+    let head = |name: &str| {
+        let page = folder.0.join(format!("{name}.html"));
+        let output = show(&format!("examples/laws/{name}.toml"), &page, &["--t-end", "0.1"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        head(&page)["scenes"][0].clone()
+    };
+    let has = |scene: &Value, title: &str, name: &str| {
+        let columns = scene["columns"].as_array().unwrap().iter();
+        columns.filter(|column| column["title"] == title && column["name"] == name).count() == 1
+    };
+    // What the model file tells itself is not told again.
+    let crane = head("crane");
+    assert_eq!(crane["mechanism"]["links"][0]["force"], json!({ "output": "wire", "part": "force" }));
+    assert!(has(&crane, "wire", "force") && !has(&crane, "wire_force", "force"));
+    let car = head("quarter_car");
+    let values: Vec<&Value> =
+        car["mechanism"]["efforts"].as_array().unwrap().iter().map(|of| &of["numbers"]["value"]).collect();
+    assert_eq!(
+        values,
+        ["damper_value", "tyre_value"].map(|name| json!({ "output": name, "part": "" })).each_ref()
+    );
+    assert!(has(&car, "damper_value", ""));
+    let quadrotor = head("quadrotor");
+    assert!(has(&quadrotor, "front_force_z", "") || has(&quadrotor, "resistance_force_z", ""), "{quadrotor}");
 }
 
 #[test]

@@ -198,7 +198,7 @@ impl<'a> Unit<'a> {
                     ])
                     .write_empty()?;
                 xml.create_element("ModelVariables").write_inner_content(|xml| {
-                    self.variables.iter().enumerate().try_for_each(|(n, variable)| variable.write(n, xml))
+                    self.variables.iter().try_for_each(|variable| variable.write(xml))
                 })?;
                 self.structure(xml)
             })?;
@@ -230,9 +230,9 @@ impl<'a> Unit<'a> {
     /// What is computed of what: every output and derivative of all states and inputs.
     fn structure(&self, xml: &mut Xml) -> io::Result<()> {
         let with = |kind: &'static str, is_it: &dyn Fn(&Variable) -> bool, xml: &mut Xml| {
-            self.variables.iter().enumerate().filter(|(_, of)| is_it(of)).try_for_each(|(n, _)| {
+            self.variables.iter().filter(|of| is_it(of)).try_for_each(|of| {
                 xml.create_element(kind)
-                    .with_attribute(("valueReference", n.to_string().as_str()))
+                    .with_attribute(("valueReference", of.reference.to_string().as_str()))
                     .write_empty()
                     .map(|_| ())
             })

@@ -9,6 +9,7 @@
 #![deny(missing_docs)]
 
 mod assemble;
+mod attraction;
 mod contact;
 mod controller;
 mod coordinate;
@@ -39,6 +40,7 @@ mod tree;
 mod validate;
 
 pub use assemble::{AssemblyError, JointStart, Move, START_TOLERANCE, Start, StartTolerances};
+pub use attraction::Attraction;
 pub use contact::Contact;
 pub use controller::{Controller, Law};
 pub use coordinate::{CoordinateKind, CoordinateUse, JointCoordinate, Seen};
@@ -70,8 +72,10 @@ pub use validate::{ParameterRule, is_inertia};
 pub struct Model {
     /// Name of the mechanism, an identifier in `snake_case`, used for the generated module.
     pub name: String,
-    /// Acceleration of gravity in the global frame, m/s².
+    /// Acceleration of gravity in the global frame, m/s²; zero where a central body attracts in its place.
     pub gravity: [Number; 3],
+    /// What attracts in place of a uniform gravity.
+    pub attraction: Option<Attraction>,
     /// The numbers that stay tunable, in the order of the model file.
     pub parameters: Vec<Parameter>,
     /// The entries of `[parameters]` that are computed from others, in the order of the model file. Wherever the model

@@ -1,11 +1,12 @@
 //! All numbers of a model.
 
-use crate::{Coupling, Formula, Model, Motion, Number, Shape, ShapeKind, StateStart};
+use crate::{Attraction, Coupling, Formula, Model, Motion, Number, Shape, ShapeKind, StateStart};
 
 impl Model {
     /// Every number of the model file that stands in the model, those of the start included.
     pub fn numbers(&self) -> Vec<&Number> {
         let mut numbers: Vec<&Number> = self.gravity.iter().collect();
+        numbers.extend(self.attraction.iter().flat_map(Attraction::numbers));
         for body in &self.bodies {
             numbers.extend([&body.mass, &body.assembly_weight]);
             numbers.extend(body.inertia.iter().chain(&body.position).chain(&body.orientation));
@@ -57,6 +58,12 @@ impl Model {
         }
         self.contacts.iter().for_each(|contact| numbers.extend(contact.numbers()));
         numbers
+    }
+}
+
+impl Attraction {
+    fn numbers(&self) -> impl Iterator<Item = &Number> {
+        std::iter::once(&self.mu).chain(&self.centre)
     }
 }
 

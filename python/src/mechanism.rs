@@ -8,6 +8,7 @@ use crate::linear::linearize;
 use crate::run::{Run, interruptible};
 use crate::sensitivity;
 use crate::stepper::Stepper;
+use gyro_cli::failure::Failure;
 use gyro_cli::library::{self, Kernels, Request};
 use gyro_codegen::{Effort, Functions, Group};
 use gyro_jit::Sizes;
@@ -157,6 +158,13 @@ impl Mechanism {
         state.model = model;
         state.set.extend(values);
         Ok(())
+    }
+
+    /// Refuses a formula with mistakes.
+    #[pyo3(name = "_check_formula")]
+    fn check_formula(&self, py: Python<'_>, text: &str) -> PyResult<()> {
+        let known = self.page.formula(text).map(|_| ());
+        known.map_err(|words| errors::raised(py, Failure::Usage(words)))
     }
 
     /// Makes a run, by options of `simulate`.

@@ -29,6 +29,13 @@ impl Run {
         self.0.outputs()
     }
 
+    /// The values of a formula.
+    #[pyo3(name = "_formula")]
+    fn formula<'py>(&self, py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let values = self.0.formula(text).map_err(|failure| errors::raised(py, failure))?;
+        Ok(PyArray1::from_vec(py, values))
+    }
+
     /// What the run was and what it cost, as JSON.
     fn summary(&self) -> String {
         self.0.summary().to_string()

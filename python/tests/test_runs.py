@@ -92,6 +92,18 @@ def test_what_cannot_be_done_is_refused_in_the_words_of_python(pendulum):
         pendulum.simulate(0.1, tolerance=1e-6)["hing"]
 
 
+def test_formulas_of_runs(pendulum):
+    height = pendulum.formula("-length*cos(hinge) + 0.5*t")
+    run = pendulum.simulate(1.0, tolerance=1e-9)
+    expected = -pendulum.parameters["length"] * np.cos(run["hinge"]) + 0.5 * run.t
+    assert np.abs(height(run) - expected).max() < 1e-15
+    assert np.array_equal(run.formula("hinge rate"), run.rate("hinge"))
+    with pytest.raises(gyro.RequestError, match="hinge"):
+        pendulum.formula("cos(hing)")
+    with pytest.raises(gyro.RequestError):
+        run.formula("1 +")
+
+
 def test_a_run_that_fails_says_where(pendulum):
     with pytest.raises(gyro.RunError, match="t = "):
         pendulum.simulate(10.0, tolerance=1e-9, budget=3)

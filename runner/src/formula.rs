@@ -43,7 +43,7 @@ pub enum Operation {
 
 impl Formula {
     /// Its value; not finite where it divides by zero or has the root of a negative number.
-    pub(crate) fn value<T: Real>(&self, see: &impl Fn(Seen) -> T) -> T {
+    pub fn value<T: Real>(&self, see: &impl Fn(Seen) -> T) -> T {
         let mut values: Vec<T> = Vec::with_capacity(self.0.len());
         for operation in &self.0 {
             values.push(match operation {

@@ -120,6 +120,8 @@ pub struct Link {
     pub damping: f64,
     /// m.
     pub free_length: f64,
+    /// N, with which it pushes its points apart, where that is told by a formula.
+    pub force: Option<Amount>,
 }
 
 /// A force or torque along a coordinate of a joint, on its second body.
@@ -138,7 +140,7 @@ pub struct Effort {
 }
 
 /// A number of a law.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Amount {
     /// One that the run does not change.
@@ -150,9 +152,22 @@ pub enum Amount {
         /// 1 or -1, by which it is multiplied.
         sign: i8,
     },
+    /// What the run tells: a formula, or the force of a link.
+    Output {
+        /// Name of the output.
+        output: String,
+        /// Which of its numbers, or empty.
+        part: &'static str,
+    },
 }
 
-/// A constant force at a point of a body, and a torque.
+impl Default for Amount {
+    fn default() -> Self {
+        Self::Value(0.0)
+    }
+}
+
+/// A force at a point of a body, and a torque.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Load {
     /// Its name.
@@ -162,9 +177,9 @@ pub struct Load {
     /// Point, m.
     pub point: [f64; 3],
     /// N.
-    pub force: [f64; 3],
+    pub force: [Amount; 3],
     /// N·m.
-    pub torque: [f64; 3],
+    pub torque: [Amount; 3],
     /// Whether both are given in the body's frame, with which they turn.
     pub in_body: bool,
 }

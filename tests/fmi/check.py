@@ -34,6 +34,8 @@ MECHANISMS = [
     ("examples/arm/arm.toml", "dop853", 1.0, {"motor": -2.0}),
     ("models/gyroscope-stiff.toml", "rodas4", 0.01, {}),
 ]
+# Laws, states and curves: each in co-simulation at a fine tolerance, against `simulate`.
+LAWS = sorted((Path(__file__).resolve().parents[2] / "examples/laws").glob("*.toml"))
 END, SAMPLE = 1.0, 0.01
 
 
@@ -242,11 +244,40 @@ def check(gyro, model, integrator, share, values, folder):
     assert exchange < 1e-5 and steps < 1e-7 and second < 1e-7 and slopes < 1e-6, figures
 
 
+def follows(gyro, model, folder):
+    """The unit of a model gives the table of `simulate` of all its states and outputs, to 1e-9."""
+    archive = folder / f"{model.stem}.fmu"
+    run(gyro, "export", "fmu", model, "--out", archive)
+    assert not validate_fmu(str(archive))
+    description = fmpy.read_model_description(str(archive))
+    end = float(description.defaultExperiment.stopTime)
+    every = end / 100
+    options = ["--integrator", "dop853", "--tolerance", "1e-12", "--every", repr(every), "--out", folder / "run"]
+    run(gyro, "simulate", model, *options)
+    with (folder / "run" / f"{model.stem}.csv").open() as lines:
+        rows = list(csv.reader(lines))
+    titles = [title.rsplit(" [", 1)[0] for title in rows[0]]
+    expected = dict(zip(titles, np.array(rows[1:], dtype=float).T))
+    outputs = [variable.name for variable in description.modelVariables if variable.causality == "output"]
+    names = [name for name in outputs if name in expected]
+    assert len(names) * 2 >= len(outputs) and not [name for name in outputs if name.endswith(" 2")], outputs
+    found = fmpy.simulate_fmu(
+        str(archive), fmi_type="CoSimulation", stop_time=end, output_interval=every, relative_tolerance=1e-12, output=names
+    )
+    assert np.abs(found["time"] - expected["t"]).max() < 1e-9 * end
+    worst = difference(found, expected, names)
+    print(f"{model.name}: {worst:.1e} in {len(names)} of {len(outputs)} outputs")
+    assert worst < 1e-9, worst
+
+
 def main():
     gyro = Path(sys.argv[1]).resolve()
     for model, integrator, share, values in MECHANISMS:
         with tempfile.TemporaryDirectory() as folder:
             check(gyro, model, integrator, share, values, Path(folder))
+    for model in LAWS:
+        with tempfile.TemporaryDirectory() as folder:
+            follows(gyro, model, Path(folder))
     print("all well")
 
 

@@ -161,7 +161,7 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
             module.implements("Partition") && module.n_charts.is_none() && has_joints,
             "charts (for trees of revolute, spherical and fixed joints: the partition goes through joint coordinates)",
         ),
-        (model.gravity.iter().all(Number::is_zero), "gravity"),
+        (model.attraction.is_none() && model.gravity.iter().all(Number::is_zero), "gravity"),
         (!model.is_worked_on(), "the work of non-conservative forces (there are none)"),
         (
             model.is_worked_on() && !model.has_work(),

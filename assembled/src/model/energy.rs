@@ -40,6 +40,10 @@ impl<T: Number> Lowered<T> {
                 Element::Between(bushing, Part::Springs) => {
                     energy.potential += bushing.potential(&self.scene, at);
                 }
+                Element::Attraction { place, mass } => {
+                    let r = self.scene.motion(at, place).r;
+                    energy.potential += self.scene.potential_at(&r) * *mass;
+                }
                 Element::Between(_, Part::Rest) | Element::Ball { .. } | Element::Load { .. } => {}
             }
         }

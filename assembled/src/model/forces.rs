@@ -30,14 +30,19 @@ pub(crate) enum Element<T> {
         torque: [Amount<T>; 3],
         frame: LoadFrame,
     },
+    /// What a central body attracts a body with.
+    Attraction { place: Place<T>, mass: T },
 }
 
 impl<T: Number> Element<T> {
-    /// Friction of the joints, then the forces of the model file.
+    /// Friction of the joints, the forces of the model file, the attraction of a central body.
     pub(crate) fn all(model: &Model, places: &Places<T>, joints: &[Joint<T>]) -> Vec<Self> {
         let own = (0..joints.len()).filter_map(|joint| Self::damping(model, joints, joint));
         let forces = model.forces.iter().flat_map(|force| Self::new(model, places, joints, &force.kind));
-        own.chain(forces).collect()
+        let bodies = model.coordinate_bodies().into_iter().filter(|_| model.attraction.is_some());
+        let mass = |body: usize| crate::number::number(model.value(&model.bodies[body].mass));
+        let attracted = bodies.map(|body| Self::Attraction { place: places.of(body), mass: mass(body) });
+        own.chain(forces).chain(attracted).collect()
     }
 
     /// A joint's own viscous damping.
@@ -110,6 +115,7 @@ impl<T: Number> Element<T> {
         match self {
             Self::Along { law, .. } => law.is_conservative(),
             Self::Between(_, part) => *part == Part::Springs,
+            Self::Attraction { .. } => true,
             Self::Ball { .. } | Self::Load { .. } => false,
         }
     }
@@ -141,6 +147,11 @@ impl<T: Number> Element<T> {
                 let torque = relative_angular_velocity(&i, &j) * -*damping;
                 sink(&joint.first.place, &i, Wrench::torque(-i.a.tr_mul(&(j.a * torque))));
                 sink(&joint.second.place, &j, Wrench::torque(torque));
+            }
+            Self::Attraction { place, mass } => {
+                let motion = scene.motion(at, place);
+                let wrench = Wrench { force: scene.gravity_at(&motion.r) * *mass, torque: Vector3::zeros() };
+                sink(place, &motion, wrench);
             }
             Self::Load { place, point, force, torque, frame } => {
                 let motion = scene.motion(at, place);

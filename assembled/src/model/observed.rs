@@ -47,7 +47,8 @@ impl<T: Number> Lowered<T> {
             }
             Quantity::Inertial(spot) => {
                 let motion = self.accelerated(at, &spot.place, solution.accelerations);
-                let specific_force = motion.point(&spot.point).second - self.scene.gravity;
+                let gravity = self.scene.gravity_at(&motion.tip(&spot.point));
+                let specific_force = motion.point(&spot.point).second - gravity;
                 let [felt, w] = [motion.a.tr_mul(&specific_force), motion.w].map(|v| spot.by_axes(v));
                 write(out, &felt, w.as_slice());
             }

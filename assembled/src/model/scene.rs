@@ -11,7 +11,10 @@ use nalgebra::{Matrix3, Vector3, Vector4};
 /// Bodies, joints and inputs: what rows, forces and outputs are made of.
 #[derive(Clone, Debug)]
 pub struct Scene<T: Number> {
+    /// Of a uniform gravity.
     pub(crate) gravity: Vector3<T>,
+    /// μ of a central body, and where it is.
+    attraction: Option<(T, Vector3<T>)>,
     /// Bodies with coordinates, by moving_body.
     pub(crate) bodies: Vec<Body<T>>,
     pub(crate) constrained: Vec<Constrained<T>>,
@@ -57,6 +60,9 @@ impl<T: Number> Scene<T> {
         let driven = (0..model.bodies.len()).filter(is_driven);
         Self {
             gravity: vector(model.values(&model.gravity)),
+            attraction: model.attraction.as_ref().map(|attraction| {
+                (number(model.value(&attraction.mu)), vector(model.values(&attraction.centre)))
+            }),
             bodies: moving_bodies.iter().map(|&body| lower_body(model, body)).collect(),
             constrained: moving_bodies.iter().enumerate().filter_map(constrained).collect(),
             driven: driven.map(|body| DrivenBody::new(model, body)).collect(),
@@ -67,6 +73,19 @@ impl<T: Number> Scene<T> {
                 .map(|p| (p.name.clone(), number(gyro_model::to_f64(&p.value))))
                 .collect(),
         }
+    }
+
+    /// The acceleration of what falls freely at a point.
+    pub(crate) fn gravity_at(&self, point: &Vector3<T>) -> Vector3<T> {
+        let Some((mu, centre)) = &self.attraction else { return self.gravity };
+        let d = centre - point;
+        let distance = d.norm();
+        d * (*mu / (distance * distance * distance))
+    }
+
+    /// The energy of a unit mass in the field of a central body.
+    pub(crate) fn potential_at(&self, point: &Vector3<T>) -> T {
+        self.attraction.as_ref().map_or(T::zero(), |(mu, centre)| -(*mu / (point - centre).norm()))
     }
 
     pub(crate) fn n_bodies(&self) -> usize {

@@ -1,7 +1,7 @@
 //! A model and its samples as the page wants them: plain data.
 
-use super::efforts;
 use super::meshes::Meshes;
+use super::{efforts, laws};
 use crate::columns::{self, orientation, scalar};
 use crate::events;
 use crate::scene::Scene;
@@ -105,7 +105,7 @@ fn unit(v: [f64; 3], otherwise: [f64; 3]) -> [f64; 3] {
 }
 
 fn links(model: &Model) -> Vec<gyro_show::Link> {
-    let link = |force: &gyro_model::Force| match &force.kind {
+    let link = |(index, force): (usize, &gyro_model::Force)| match &force.kind {
         ForceKind::Link { first, second, stiffness, damping, free_length, tension: _ } => {
             Some(gyro_show::Link {
                 name: force.name.clone(),
@@ -113,11 +113,12 @@ fn links(model: &Model) -> Vec<gyro_show::Link> {
                 stiffness: model.value(stiffness),
                 damping: model.value(damping),
                 free_length: model.value(free_length),
+                force: laws::of_link(model, index),
             })
         }
         _ => None,
     };
-    model.forces.iter().filter_map(link).collect()
+    model.forces.iter().enumerate().filter_map(link).collect()
 }
 
 fn springs(model: &Model) -> Vec<usize> {
@@ -129,18 +130,20 @@ fn springs(model: &Model) -> Vec<usize> {
 }
 
 fn loads(model: &Model) -> Vec<gyro_show::Load> {
-    // The page knows no formulas.
-    let is_formula = |number: &Number| number.formula().is_some();
     let load = |force: &gyro_model::Force| match &force.kind {
-        ForceKind::Load { force, torque, .. } if force.iter().chain(torque).any(is_formula) => None,
-        ForceKind::Load { body, point, force: value, torque, frame } => Some(gyro_show::Load {
-            name: force.name.clone(),
-            body: *body,
-            point: model.values(point),
-            force: model.values(value),
-            torque: model.values(torque),
-            in_body: *frame == LoadFrame::Body,
-        }),
+        ForceKind::Load { body, point, force: along, torque, frame } => {
+            let told = |key, numbers: &[Number; 3]| {
+                std::array::from_fn(|k| laws::told(model, force, (key, k), &numbers[k]))
+            };
+            Some(gyro_show::Load {
+                name: force.name.clone(),
+                body: *body,
+                point: model.values(point),
+                force: told("force", along),
+                torque: told("torque", torque),
+                in_body: *frame == LoadFrame::Body,
+            })
+        }
         _ => None,
     };
     model.forces.iter().filter_map(load).collect()

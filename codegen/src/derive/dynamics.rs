@@ -18,11 +18,11 @@ pub struct Dynamics {
     pub applied_force: Vec<ExprId>,
     /// Of joints.
     pub rotors: Vec<Rotor>,
-    /// What acts on each body besides gravity and forces along joint coordinates.
+    /// What acts on each body besides a uniform gravity and forces along joint coordinates.
     pub other_loads: Vec<Load>,
     /// ½ Σ (sᵀ m s + w'ᵀ J' w').
     pub kinetic: ExprId,
-    /// −Σ m gᵀ r, and what springs store.
+    /// −Σ m gᵀ r, or −Σ m μ/|r|, and what springs store.
     pub potential: ExprId,
     /// Power of the non-conservative forces.
     pub power: ExprId,

@@ -1,5 +1,6 @@
-//! Forces besides gravity: what each does to the bodies, what energy it stores, what power it has.
+//! Forces besides a uniform gravity: what each does to the bodies, what energy it stores, what power it has.
 
+use crate::derive::attraction::{self, Field};
 use crate::derive::bushings::Held;
 use crate::derive::joint_coordinate::{self, Load, relative_spin};
 use crate::derive::laws::{self, Line, OfBodies, Own, Readings};
@@ -16,7 +17,7 @@ pub struct Forces {
     pub loads: Vec<Load>,
     /// The part of them that does not act along joint coordinates.
     pub other_loads: Vec<Load>,
-    /// Energy stored in springs.
+    /// Energy stored in springs, and that of bodies near a central one.
     pub potential: ExprId,
     /// Power of the forces that store none.
     pub power: ExprId,
@@ -126,6 +127,7 @@ impl Forces {
             forces.add_bushing(system, &force.kind);
             forces.add_load(system, &force.kind);
         }
+        forces.add_attraction(system);
         forces.power_at_points = forces.power;
         forces.power = system.graph.add(power_of_damping, forces.power);
         forces.other_loads = forces.loads.clone();
@@ -192,6 +194,20 @@ impl Forces {
         for (frame, load) in bushing.ends().into_iter().zip(&loads) {
             self.push(system, frame.body, load);
         }
+    }
+
+    /// Of a central body on each body with coordinates.
+    fn add_attraction(&mut self, system: &mut System) {
+        for moving_body in 0..system.moving_bodies.len() {
+            let body = system.moving_bodies[moving_body];
+            let r = system.poses[body].r;
+            let Some(field) = Field::at(system, &r) else { return };
+            let mass = system.mass(moving_body);
+            let force = system.graph.scale_vec(mass, &field.acceleration);
+            self.push(system, body, &Load { force, torque: ZERO3 });
+        }
+        let stored = attraction::potential(system);
+        self.potential = system.graph.add(self.potential, stored);
     }
 
     fn add_load(&mut self, system: &mut System, kind: &ForceKind) {

@@ -1,6 +1,7 @@
 //! From the model to Φ and its derivatives, masses, forces and outputs: the textbook, symbol by symbol.
 
 pub mod armature;
+pub mod attraction;
 pub mod between;
 pub mod bushings;
 pub mod constraints;

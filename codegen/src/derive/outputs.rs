@@ -1,5 +1,6 @@
 //! The outputs that the model file asks for, in terms of the state, of [`Symbol::Acceleration`] and of the multipliers.
 
+use crate::derive::attraction;
 use crate::derive::bushings;
 use crate::derive::dynamics::Dynamics;
 use crate::derive::forces;
@@ -54,7 +55,8 @@ fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<Exp
         OutputKind::Acceleration(frame) => acceleration(system, frame),
         OutputKind::Inertial(frame) => {
             let (linear, _) = linear_and_angular(system, frame);
-            let (gravity, pose) = (system.numbers(&system.model.gravity), system.poses[frame.body]);
+            let pose = system.poses[frame.body];
+            let gravity = attraction::gravity_at(system, frame.body, &frame.point);
             let felt = system.graph.sub_vec(&linear, &gravity);
             let felt = system.graph.transposed_vec(&pose.a, &felt);
             [felt, pose.w].into_iter().flat_map(|vector| by_axes(system, frame, vector)).collect()

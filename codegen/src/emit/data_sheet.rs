@@ -282,7 +282,7 @@ fn left_out(equations: &Equations) -> Vec<String> {
         };
         left_out.push(format!("charts (for trees of revolute, spherical and fixed joints: {instead})"));
     }
-    if model.gravity.iter().all(gyro_model::Number::is_zero) {
+    if model.attraction.is_none() && model.gravity.iter().all(gyro_model::Number::is_zero) {
         left_out.push("gravity".into());
     }
     if !model.has_work() {

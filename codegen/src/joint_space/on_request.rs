@@ -6,6 +6,7 @@ use super::axis_dynamics::AxisTree;
 use super::coordinates::Coordinates;
 use super::dynamics::JointDynamics;
 use super::maps;
+use crate::derive::attraction;
 use crate::derive::system::System;
 use crate::expr::differentiate::gradient;
 use crate::expr::graph::{ExprId, Graph};
@@ -96,10 +97,10 @@ impl<'c> Parts<'c> {
     }
 
     /// The force along each rate that holds the mechanism at rest against gravity: the gradient of the potential
-    /// `−Σ m g·r`.
+    /// `−Σ m g·r`, or that of a central body.
     fn gravity(&self, system: &mut System) -> Chosen {
         let gravity = system.numbers(&system.model.gravity);
-        let mut potential = Graph::ZERO;
+        let mut potential = attraction::potential(system);
         for moving_body in 0..system.moving_bodies.len() {
             let mass = system.mass(moving_body);
             let graph = &mut system.graph;
@@ -114,7 +115,9 @@ impl<'c> Parts<'c> {
         let slopes = gradient(&mut system.graph, potential, &places);
         let along = tangents.iter().map(|tangent| system.graph.dot_slices(tangent, &slopes)).collect();
         let mut forms = vec![("gradient of the potential", along)];
-        forms.extend(self.tree.as_ref().map(|tree| (IN_JOINTS, tree.gravity(system))));
+        // There gravity is an acceleration of the ground.
+        let tree = self.tree.as_ref().filter(|_| system.model.attraction.is_none());
+        forms.extend(tree.map(|tree| (IN_JOINTS, tree.gravity(system))));
         self.cheapest(system, forms)
     }
 

@@ -9,6 +9,8 @@ use std::io;
 
 /// A variable of the unit.
 pub(super) struct Variable {
+    /// Its value reference.
+    pub(super) reference: usize,
     pub(super) name: String,
     pub(super) unit: Option<String>,
     pub(super) causality: &'static str,
@@ -18,7 +20,8 @@ pub(super) struct Variable {
     pub(super) derivative: Option<usize>,
 }
 
-/// All variables, in the order of their value references: time, states, derivatives, inputs, parameters, outputs.
+/// All variables, in the order of their value references: time, states, derivatives, inputs, parameters, outputs. An
+/// output that tells a state of the model file is that state, and no second variable.
 pub(super) fn variables(
     model: &Model,
     scheduled: &Scheduled,
@@ -74,6 +77,9 @@ pub(super) fn variables(
             ..Variable::new(name, "output", "continuous")
         });
     }
+    variables.iter_mut().enumerate().for_each(|(n, variable)| variable.reference = n);
+    let is_state = |of: &Variable| model.states.iter().any(|state| state.name == of.name);
+    variables.retain(|of| of.reference <= n_states || !(of.causality == "output" && is_state(of)));
     distinct(&mut variables);
     Ok(variables)
 }
@@ -81,11 +87,20 @@ pub(super) fn variables(
 impl Variable {
     fn new(name: &str, causality: &'static str, variability: &'static str) -> Self {
         let name = name.to_owned();
-        Self { name, unit: None, causality, variability, initial: None, start: None, derivative: None }
+        Self {
+            reference: 0,
+            name,
+            unit: None,
+            causality,
+            variability,
+            initial: None,
+            start: None,
+            derivative: None,
+        }
     }
 
-    pub(super) fn write(&self, reference: usize, xml: &mut Xml) -> io::Result<()> {
-        let reference = reference.to_string();
+    pub(super) fn write(&self, xml: &mut Xml) -> io::Result<()> {
+        let reference = self.reference.to_string();
         let (start, derivative) = (self.start.map(number), self.derivative.map(|of| of.to_string()));
         let optional = [
             ("initial", self.initial),

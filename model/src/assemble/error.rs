@@ -112,6 +112,13 @@ pub enum AssemblyError {
         /// Name of the force.
         name: String,
     },
+    /// The mass centre of a body is where the central body of gravity is, whose attraction has no direction there.
+    Attracted {
+        /// Index into [`crate::Model::bodies`].
+        body: usize,
+        /// Name of the body.
+        name: String,
+    },
     /// No value near zero gives a state the rate zero.
     Restless {
         /// Index into [`crate::Model::states`].
@@ -177,6 +184,7 @@ impl AssemblyError {
             Self::NotFinite { body, .. }
             | Self::Jump { body, .. }
             | Self::OtherBranch { body, .. }
+            | Self::Attracted { body, .. }
             | Self::Unconnected { body, .. } => Some(Place::body(*body, "")),
             Self::Held { joint, .. } => Some(Place::joint(*joint, "")),
             Self::Link { force, .. } => Some(Place::force(*force, "")),
@@ -220,6 +228,10 @@ impl AssemblyError {
             Self::Link { .. } => "start the mechanism where the ends are apart, or move one of them; if they never separate, write a \
                                   force along the joint's coordinate (\"spring\" or \"damper\") instead"
                 .to_owned(),
+            Self::Attracted { .. } => {
+                "start the body elsewhere, move the `centre` of gravity, or write fixed = true if nothing is to move it"
+                    .to_owned()
+            }
             Self::Restless { .. } => "write start = ..., a number".to_owned(),
             Self::BeyondStop { joint, key, stop, unit, .. } => {
                 let side = if *key == "lower" { "or more" } else { "or less" };
@@ -314,6 +326,11 @@ impl fmt::Display for AssemblyError {
             Self::Link { name, .. } => {
                 write!(f, "the two ends of link `{name}` coincide at the start: its force has no direction")
             }
+            Self::Attracted { name, .. } => write!(
+                f,
+                "the mass centre of body `{name}` starts where the central body of gravity is: its attraction has no \
+                 direction there"
+            ),
             Self::OverConstrained { closing, .. } => write!(
                 f,
                 "the mechanism is over-constrained: nothing can move and nothing drives it; its loops are closed by {}",

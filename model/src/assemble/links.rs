@@ -1,4 +1,5 @@
-//! Links act along the line between two points: where the points coincide there is none.
+//! Links act along the line between two points, and a central body attracts along the line to it: where the points
+//! coincide there is none.
 
 use super::{AssemblyError, Start};
 use crate::kinematics::{Kinematics, turned, value_of};
@@ -11,8 +12,16 @@ const COINCIDENT: f64 = 1e-12;
 /// together.
 const STRAIGHT: f64 = 0.1;
 
-/// Refuses a start in which the two ends of a link coincide.
+/// Refuses a start in which the two ends of a link coincide, or a body is where the central body of gravity is.
 pub(super) fn check(model: &Model, start: &Start) -> Result<(), AssemblyError> {
+    if let Some(attraction) = &model.attraction {
+        let centre = Vector::from(model.values(&attraction.centre));
+        let mut bodies = model.coordinate_bodies().into_iter().zip(start.q.chunks_exact(7));
+        let at_centre = |q: &[f64]| coincide(model, &[Vector::new(q[0], q[1], q[2]), centre]);
+        if let Some((body, _)) = bodies.find(|(_, q)| at_centre(q)) {
+            return Err(AssemblyError::Attracted { body, name: model.bodies[body].name.clone() });
+        }
+    }
     match ends(model, 0.0, &start.q).into_iter().find(|(_, ends)| coincide(model, ends)) {
         Some((force, _)) => Err(AssemblyError::Link { force, name: model.forces[force].name.clone() }),
         None => Ok(()),

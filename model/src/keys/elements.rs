@@ -1,7 +1,7 @@
 //! Ready elements: what each may be told. What it stands for is in `prelude.toml`.
 
 use super::{
-    COUPLER_END, FORCE_END, KIND, Key, ON_COORDINATE, ON_JOINT, POINT, Table, kind, name, number,
+    COUPLER_END, FORCE_END, KIND, Key, Kind, ON_COORDINATE, ON_JOINT, POINT, Table, kind, name, number,
     orientation, reference, strength, strengths, table, tables_of, vector, word,
 };
 
@@ -19,6 +19,16 @@ const STRIBECK: Key =
         .positive("friction would jump")
         .required();
 const VISCOUS: Key = number("viscous", "N.m.s/rad or N.s/m", "").not_negative(LOSES).or("0");
+
+/// The first key that an element of a kind has to have and that it lacks.
+pub(crate) fn lacking(kind: &Kind, has: impl Fn(&'static str) -> bool) -> Option<&'static str> {
+    let is_needed = |key: &Key| match (kind.word, key.name) {
+        ("cylinder", "joint") => !has("first"),
+        ("cylinder", "first" | "second" | "closed") => !has("joint"),
+        _ => key.is_required,
+    };
+    kind.keys.iter().filter(|key| is_needed(key)).map(|key| key.name).find(|name| !has(name))
+}
 
 /// `[[element]]`.
 pub static ELEMENT: Table = Table::new(
@@ -44,13 +54,16 @@ pub static ELEMENT: Table = Table::new(
     ),
     kind(
         "cylinder",
-        "a hydraulic cylinder along a joint coordinate x, its valve on a pump and a tank: the pressure of each chamber \
-         has the rate `bulk_modulus` · (flow − area · ẋ) / volume, a flow through the open valve is `valve` · `opening` \
+        "a hydraulic cylinder along a joint coordinate x, or between two points at the distance `closed` + x, its valve \
+         on a pump and a tank: the pressure of each chamber has the rate `bulk_modulus` · (flow − area · ẋ) / volume, a flow through the open valve is `valve` · `opening` \
          · √(difference of pressures), and the force is p_a · `area` − p_b · `rod_area`; states `NAME_pressure_a` and \
-         `NAME_pressure_b`",
+         `NAME_pressure_b`, between points an output `NAME_line`",
         &[
-            ON_JOINT,
+            Key { is_required: false, ..ON_JOINT }.or("between points"),
             ON_COORDINATE,
+            Key { is_required: false, ..FIRST }.or("along a joint"),
+            Key { is_required: false, ..SECOND }.or("along a joint"),
+            number("closed", "m", "the distance of its points at x = 0").positive("").or("along a joint"),
             strength("opening", "", "of the valve, from −1 (retract) to 1 (extend), usually an input").required(),
             number("supply", "Pa", "pressure of the pump").positive("").required(),
             number("tank", "Pa", "pressure of the tank").or("0"),

@@ -13,7 +13,13 @@ pub static FILE: Table = Table::new(
         plain("format", "", "version of the format: 1").required().eg("format = 1 at the top"),
         name("name of the mechanism and of the generated module")
             .eg("name = \"some_name\", the name of the generated module"),
-        vector("gravity", "m/s2", "acceleration of gravity, global frame").or("[0, 0, 0]"),
+        Key::new(
+            "gravity",
+            GRAVITY,
+            "acceleration of gravity, global frame; or the table of a central body, below",
+        )
+        .eg("gravity = [0, 0, -9.81], in m/s2, if the z axis points up, or gravity = { mu = ... }")
+        .or("[0, 0, 0]"),
         flag("count_work", "whether the state carries the work of what stores no energy, see below")
             .or("true"),
         table("simulation", &SIMULATION, "how a run is made, see below")
@@ -57,7 +63,22 @@ pub static FILE: Table = Table::new(
     ],
 );
 
+const GRAVITY: Value = Value::Either(&[Value::Numbers(3, "m/s2"), Value::Table(&ATTRACTION)]);
 const INPUTS: Value = Value::Entries(&Value::Either(&[Value::Plain(""), Value::Table(&INPUT)]));
+
+/// The attraction of a central body.
+pub static ATTRACTION: Table = Table::new(
+    "central gravity",
+    "The attraction of a point mass: a body of mass m whose mass centre is at r from `centre` is pulled there by \
+     m `mu` / r².",
+    &[
+        number("mu", "m3/s2", "gravitational parameter of what attracts")
+            .required()
+            .positive("")
+            .eg("mu = 3.986004418e14, in m3/s2, the earth's"),
+        vector("centre", "m", "where it is, global frame").or("[0, 0, 0]"),
+    ],
+);
 
 /// How a run is made.
 pub static SIMULATION: Table = Table::new(

@@ -94,7 +94,7 @@ pub static FORCE: Table = Table::new(
                 .eg("stiffness = ..., in N/m, damping = ..., in N.s/m, or tension = ..., in N")
                 .or("0"),
             strength("damping", "N.s/m", "").not_negative(DRIVES).or("0"),
-            number("free_length", "m", "")
+            strength("free_length", "m", "of a formula, or an input, the spring does work and stores nothing")
                 .not_negative("lengths cannot be negative")
                 .or("required with `stiffness`"),
             strength("tension", "N", "what it pulls besides: a formula may name `length` and `length rate`")

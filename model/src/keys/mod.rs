@@ -13,7 +13,8 @@ mod observed;
 
 pub use bodies::{BODY, DRIVEN, ELEMENTS, POINT_MASS, ROTATION, SHAPE};
 pub use elements::ELEMENT;
-pub use file::{FILE, GENERATE, INPUT, MOTION, SIMULATION, SINUSOID};
+pub(crate) use elements::lacking;
+pub use file::{ATTRACTION, FILE, GENERATE, INPUT, MOTION, SIMULATION, SINUSOID};
 pub use forces::{BUSHING_END, FORCE, FORCE_END};
 pub use joints::{COUPLER, COUPLER_END, DRIVER, JOINT, JOINT_END};
 pub use observed::{CONTACT, CONTROLLER, CURVE, EVENT, FORMULA, OUTPUT, STATE};

@@ -4,7 +4,7 @@ use super::numbers::{number, vector};
 use super::reader::Reader;
 use super::section::Section;
 use super::{references, tables};
-use crate::keys::Value;
+use crate::keys::{Value, lacking};
 use crate::validate::Owner;
 use crate::{Element, Number};
 
@@ -16,9 +16,18 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Element> 
 
 fn element(reader: &mut Reader<'_>, mut section: Section<'_>, name: String) -> Option<Element> {
     let kind = section.read_kind(reader, |_, _| None)?;
+    if kind.key("closed").is_some() {
+        let twice = format!("{} is along a joint and between points", section.title);
+        section.either(reader, ["joint", "first"], &twice);
+    }
+    let lacks = lacking(kind, |key| section.has(key));
+    if let Some(key) = lacks.filter(|key| kind.key(key).is_some_and(|key| !key.is_required)) {
+        section.require(reader, key);
+    }
     let mut numbers: Vec<(&'static str, Number)> = Vec::new();
     for key in kind.keys {
         match key.value {
+            Value::Reference if !section.has(key.name) => {}
             Value::Reference if key.name == "joint" && kind.key("coordinate").is_some() => {
                 references::coordinate(reader, &section);
             }

@@ -1,8 +1,8 @@
 //! Forces: in joints, between bodies and on bodies.
 
 use super::reader::Reader;
-use super::section::Section;
-use super::{outputs, references, tables};
+use super::section::{Item, Section};
+use super::{laws, outputs, references, tables};
 use crate::keys::Kind;
 use crate::validate::{Owner, Side};
 use crate::{BodyFrame, Bushing, BushingLaw, Force, ForceKind, JointCoordinate, LoadFrame, Number, StopSide};
@@ -85,14 +85,36 @@ impl<'s> Reading<'_, '_, 's> {
         if self.section.has("stiffness") {
             self.section.require_as(self.reader, "free_length", "free_length = ..., in m");
         }
-        ForceKind::Link {
-            first,
-            second,
-            stiffness: self.number("stiffness"),
-            damping: self.number("damping"),
-            free_length: self.number("free_length"),
-            tension: self.number("tension"),
+        let [mut stiffness, damping, mut free_length, mut tension] =
+            ["stiffness", "damping", "free_length", "tension"].map(|key| self.number(key));
+        if matches!(free_length, Number::Formula(_) | Number::Input { .. }) {
+            tension = self.pull_of_varying_length().unwrap_or(tension);
+            (stiffness, free_length) = (Number::integer(0), Number::integer(0));
         }
+        ForceKind::Link { first, second, stiffness, damping, free_length, tension }
+    }
+
+    /// The tension of a link whose free length varies, `stiffness (l − free_length) + tension`: its spring stores
+    /// nothing that could be counted, as what changes its length does work on it.
+    fn pull_of_varying_length(&mut self) -> Option<Number> {
+        let item = self.section.require(self.reader, "free_length")?;
+        if self.reader.is_named("length") {
+            let words = [
+                "a `free_length` that varies needs the name `length` for the distance of the link's ends"
+                    .to_owned(),
+                "a formula, or an input".to_owned(),
+                "give what the model file calls `length` another name".to_owned(),
+            ];
+            item.wrong(self.reader, words);
+            return None;
+        }
+        let stiffness = self.section.require_as(self.reader, "stiffness", "stiffness = ..., in N/m")?;
+        let mut text = format!("({})*(length - ({}))", stiffness.written()?, item.written()?);
+        if let Some(tension) = self.section.get("tension") {
+            text += &format!(" + ({})", tension.written()?);
+        }
+        let item = Item { key: self.section.key("tension"), ..item };
+        laws::strength(self.reader, item, &text)
     }
 
     fn bushing(&mut self) -> ForceKind {

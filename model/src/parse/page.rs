@@ -11,9 +11,9 @@ use super::{
     bodies, contacts, controllers, couplings, curves, elements, events, forces, joints, named_formulas,
     outputs, parameters, point_masses, seen, simulation, states,
 };
-use crate::keys::{FILE, GENERATE};
+use crate::keys::{ATTRACTION, FILE, GENERATE};
 use crate::validate::{Owner, Place};
-use crate::{Between, Contact, Model};
+use crate::{Attraction, Between, Contact, Model, Number};
 
 /// Reads everything. Where something is wrong the reader knows, and a default stands in the model.
 pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
@@ -22,7 +22,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     format(reader, &page);
     let name = name(reader, &page);
     let parameters::Tables { parameters, derived, mut inputs, mut between } = parameters::read(reader, &page);
-    let gravity = page.vector(reader, "gravity");
+    let (gravity, attraction) = gravity(reader, &page);
     let counts_work = page.flag(reader, "count_work");
     let functions = functions(reader, &page);
     let simulation = simulation::read(reader, &page);
@@ -63,6 +63,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let mut model = Model {
         name,
         gravity,
+        attraction,
         parameters,
         derived_parameters: derived,
         inputs,
@@ -107,6 +108,17 @@ fn name(reader: &mut Reader<'_>, page: &Section<'_>) -> String {
         item.wrong(reader, keyword(name));
     }
     name.to_owned()
+}
+
+/// Gravity that is the same everywhere, or what attracts in its place.
+fn gravity(reader: &mut Reader<'_>, page: &Section<'_>) -> ([Number; 3], Option<Attraction>) {
+    let table = page.get("gravity").filter(|item| item.value.get_ref().is_table());
+    let Some(item) = table else { return (page.vector(reader, "gravity"), None) };
+    let attraction = Section::within(reader, item, "gravity", &ATTRACTION).map(|section| Attraction {
+        mu: section.number(reader, "mu"),
+        centre: section.vector(reader, "centre"),
+    });
+    (std::array::from_fn(|_| Number::integer(0)), attraction)
 }
 
 /// The names of the functions to be generated: which there are is the generator's to know.

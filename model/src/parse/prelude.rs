@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeArray, DeString, DeTable, DeValue};
 
 use crate::JointKind;
-use crate::keys::{ELEMENT, Kind};
+use crate::keys::{ELEMENT, Kind, lacking};
 
 /// What each kind stands for.
 pub(super) const PRELUDE: &str = include_str!("../prelude.toml");
@@ -65,7 +65,9 @@ impl<'a, 't> Expansion<'a, 't> {
         let expansion =
             Self { file, table, kind, name: name.get_ref().as_str()?, place: name.span(), pair: None };
         let joint = table.get("joint").and_then(|joint| joint.get_ref().as_str());
-        let is_whole = kind.keys.iter().all(|key| !key.is_required || table.contains_key(key.name))
+        let has = |key: &str| table.contains_key(key);
+        let is_whole = lacking(kind, has).is_none()
+            && !(kind.key("closed").is_some() && has("joint") && has("first"))
             && joint.is_none_or(|joint| expansion.joint(joint).is_some());
         is_whole.then_some(expansion)
     }

@@ -111,6 +111,15 @@ impl<'t> Reader<'t> {
         self.names.get(what).map_or(&[], Vec::as_slice)
     }
 
+    /// Whether a formula may name something so, be it a number or what moves.
+    pub(super) fn is_named(&self, name: &str) -> bool {
+        let numbers =
+            self.parameters.iter().chain(&self.inputs).chain(self.derived.iter().map(|(name, _)| name));
+        let moving = self.visible.iter().map(|(name, _)| name);
+        let formulas = self.formulas.iter().map(|(name, _)| name);
+        numbers.chain(moving).chain(formulas).any(|known| known == name)
+    }
+
     /// Whether there is a joint of this name.
     pub(super) fn has_joint(&self, name: &str) -> bool {
         self.named("joint").iter().any(|joint| joint.as_deref() == Some(name))

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use num_bigint::BigInt;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
@@ -289,6 +290,19 @@ impl<'t> Item<'t> {
 
     pub(super) fn wrong(&self, reader: &mut Reader<'_>, words: [String; 3]) {
         reader.wrong(self.place, self.span(), words);
+    }
+
+    /// What is written of a number: as a formula has it.
+    pub(super) fn written(&self) -> Option<String> {
+        match self.value.get_ref() {
+            DeValue::String(text) => Some(text.to_string()),
+            DeValue::Float(float) => Some(float.as_str().trim_start_matches('+').to_owned()),
+            DeValue::Integer(integer) => {
+                let value = BigInt::parse_bytes(integer.as_str().as_bytes(), integer.radix())?;
+                Some(value.to_string())
+            }
+            _ => None,
+        }
     }
 
     /// Reports that something of another type was expected.

@@ -4,7 +4,7 @@
 //! One word may stand for several of ours; which is meant depends on the keys that are known in its place.
 
 /// Words of others, each with those of ours that it may stand for, the likeliest first.
-const WORDS: [(&str, &str); 68] = [
+const WORDS: [(&str, &str); 70] = [
     // Kinds of joint.
     ("hinge pin continuous rotary rotational rotation pivot_joint r", "revolute"),
     ("slide slider sliding translational linear prism p", "prismatic"),
@@ -33,6 +33,8 @@ const WORDS: [(&str, &str); 68] = [
     ("constraint_force joint_force reaction_force", "reaction"),
     // Keys of the model file and of its settings.
     ("g gravitational_acceleration", "gravity"),
+    ("gm gravitational_parameter standard_gravitational_parameter", "mu"),
+    ("center origin focus", "centre"),
     ("bodies link links rigid_body part", "body"),
     ("joints constraint constraints", "joint"),
     ("forces actuators springs", "force"),

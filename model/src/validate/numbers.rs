@@ -9,6 +9,9 @@ use crate::{Model, Parameter};
 pub(crate) fn problems(model: &Model) -> Vec<Problem> {
     let mut found: Vec<Problem> = sizes("parameter", &model.parameters, Owner::Parameter).collect();
     found.extend(sizes("input", &model.inputs, Owner::Input));
+    if let Some(attraction) = &model.attraction {
+        found.extend(Ranged::of_attraction(attraction).problems(model));
+    }
     for (index, body) in model.bodies.iter().enumerate() {
         found.extend(Ranged::of_body(index, body).problems(model));
         found.extend(inertia::inertia(model, index, body));

@@ -6,8 +6,10 @@ use num_traits::{Signed, Zero};
 
 use super::inertia::is_left_out;
 use super::{Owner, ParameterRule, Place, Problem, shown};
-use crate::keys::{BODY, CONTACT, CONTROLLER, COUPLER, ELEMENT, FORCE, JOINT, Key, Range};
-use crate::{Body, Contact, Controller, Coupler, Element, Force, Joint, JointKind, Model, Number, Rational};
+use crate::keys::{ATTRACTION, BODY, CONTACT, CONTROLLER, COUPLER, ELEMENT, FORCE, JOINT, Key, Range};
+use crate::{
+    Attraction, Body, Contact, Controller, Coupler, Element, Force, Joint, JointKind, Model, Number, Rational,
+};
 
 /// The message for a number that is out of its key's range.
 pub(crate) fn out_of_range(key: &Key, title: &str, value: &Rational) -> Option<[String; 3]> {
@@ -50,6 +52,10 @@ impl<'m> Ranged<'m> {
         let numbers = numbers.into_iter().filter(|(_, number)| number.formula().is_none());
         let numbers = numbers.filter_map(|(name, number)| Some((key(name)?, number)));
         Self { owner, title, numbers: numbers.collect() }
+    }
+
+    pub(super) fn of_attraction(attraction: &'m Attraction) -> Self {
+        Self::new((Owner::Page, "gravity".to_owned()), ATTRACTION.keys, [("mu", &attraction.mu)])
     }
 
     pub(super) fn of_body(index: usize, body: &'m Body) -> Self {

@@ -49,6 +49,7 @@ impl Model {
     pub fn parameter_rules(&self) -> Vec<ParameterRule<'_>> {
         use ParameterRule::{Inertia, NotParallel, NotZero};
         let mut rules = Vec::new();
+        rules.extend(self.attraction.iter().flat_map(|attraction| Ranged::of_attraction(attraction).rules()));
         for body in &self.bodies {
             rules.extend(Ranged::of_body(0, body).rules());
             if !is_left_out(body, &body.inertia) {

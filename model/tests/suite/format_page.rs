@@ -25,8 +25,9 @@ fn read(text: &str) -> Result<Model, Diagnostics> {
 }
 
 /// All tables of keys that the document shows.
-const TABLES: [&Table; 19] = [
+const TABLES: [&Table; 20] = [
     &keys::FILE,
+    &keys::ATTRACTION,
     &keys::SIMULATION,
     &keys::BODY,
     &keys::DRIVEN,
@@ -61,7 +62,7 @@ fn markdown(head: &[&str], rows: &[Vec<String>]) -> String {
 
 fn unit(key: &Key) -> String {
     let unit = key.unit().unwrap_or_default();
-    unit.replace('.', "·").replace("s2", "s²").replace("m2", "m²")
+    unit.replace('.', "·").replace("s2", "s²").replace("m2", "m²").replace("m3", "m³")
 }
 
 /// A default: code where the model file would have it so, words otherwise.

@@ -6,7 +6,7 @@ import json
 import operator
 import os
 import warnings
-from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, Mapping, NamedTuple, Sequence, Union
 
 import numpy as np
 
@@ -111,6 +111,14 @@ class Mechanism(_native.Mechanism):
         for words in run.warnings:
             warnings.warn(words, RunWarning, stacklevel=2)
         return run
+
+    def formula(self, text: str) -> Callable[[Run], Array]:
+        """A function of runs that gives the values of a formula at each sample, as `Run.formula` does.
+
+        Raises RequestError if the formula has mistakes.
+        """
+        self._check_formula(text)
+        return operator.methodcaller("formula", text)
 
     def set(self, **parameters: float) -> None:
         """Sets parameters of the model file; the next run starts from an assembly with them. Units are the model file's."""

@@ -98,6 +98,14 @@ class Run:
         """The rate of a coordinate, rad/s or m/s; shape (samples,)."""
         return self[f"{name} rate"]
 
+    def formula(self, text: str) -> Array:
+        """The values of a formula, such as "0.5*cos(hinge) + hinge rate^2", at each sample; shape (samples,).
+
+        It may name time, `t`, parameters, coordinates, rates, numbers of outputs, and curves and formulas of the model
+        file. Raises RequestError if it has mistakes.
+        """
+        return self._native._formula(text)
+
     @cached_property
     def outputs(self) -> dict[str, Array]:
         """The outputs of the model file by name, each of shape (samples,); parts of one as "name.x"."""

@@ -100,3 +100,12 @@ export function valueAt(time, values, t) {
   const part = Math.min(1, Math.max(0, (t - time[i]) / (time[j] - time[i])));
   return values[i] + part * (values[j] - values[i]);
 }
+
+/** A function of time that gives a number of a law: a constant, an input with its sign, or what an output tells. */
+export function amountOf({ columns, time }, amount) {
+  if (typeof amount === 'number') return () => amount;
+  const inputs = columns.filter(({ group }) => group === 'Inputs');
+  const told = ({ group, title, name }) => group === 'Outputs' && title === amount.output && name === amount.part;
+  const column = 'input' in amount ? inputs[amount.input] : columns.find(told);
+  return (t) => (column ? (amount.sign ?? 1) * valueAt(time, column.values, t) : 0);
+}

@@ -87,6 +87,29 @@ const tests = {
     return page;
   },
 
+  async 'forces by formula are drawn as they accelerate'(browser) {
+    for (const [name, body, mass] of [['quadrotor', 'frame', 1.2], ['crane', 'load', 50]]) {
+      const page = await open(browser, at(name));
+      await page.keyboard.press('a');
+      const { sum, needed, count } = await page.evaluate(([body, mass]) => {
+        const { picture, scenes: [scene] } = globalThis.gyroPage;
+        const b = scene.mechanism.bodies.findIndex(({ name }) => name === body);
+        const pushes = picture.arrows.drawn.filter(({ source }) => !source.turns);
+        const k = Math.floor(scene.n / 2);
+        const t = scene.time[k];
+        const sum = [0, 1, 2].map((axis) => pushes.reduce((all, { source }) => all + source.at(t)[0][1][axis], 0));
+        const v = scene.bodies[b].velocity;
+        const needed = [0, 1, 2].map((axis) => mass * (v[axis][k + 1] - v[axis][k - 1]) / (scene.time[k + 1] - scene.time[k - 1]));
+        return { sum, needed, count: pushes.length };
+      }, [body, mass]);
+      const size = Math.hypot(...needed);
+      assert.ok(size > 0.1 && count > 1, `${name}: ${needed} of ${count}`);
+      assert.ok(Math.hypot(...sum.map((x, axis) => x - needed[axis])) < 1e-3 * mass * 9.81, `${name}: ${sum}, not ${needed}`);
+      await page.close();
+    }
+    return open(browser, at('crane'));
+  },
+
   async 'meshes are where and as large as their model file says'(browser) {
     const page = await open(browser, at('wedge'));
     const box = await page.evaluate(() => {

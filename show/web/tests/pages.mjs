@@ -8,6 +8,8 @@ const OTHERS = [
   ['examples/pendulum.toml', ['--t-end', '1', '--compare', 'length=0.4', '--reactions'], 'compared'],
   ...[...LIVE, STIFF].map(([file, more]) => [file, [...more, '--live'], `live-${nameOf(file)}`]),
   ['show/web/tests/wedge.toml', [], 'wedge'],
+  ['examples/laws/quadrotor.toml', ['--t-end', '1'], 'quadrotor'],
+  ['examples/laws/crane.toml', [], 'crane'],
   ['show/web/tests/thrown.toml', ['--tolerance', '1e-9'], 'thrown'],
   ['examples/pendulum.toml', ['--t-end', '100', '--every', '0.001', '--step', '0.001'], 'many'],
 ];

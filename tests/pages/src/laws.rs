@@ -129,7 +129,20 @@ impl Page {
         }
         let formula = Words { dice: &mut dice, names: names.clone() }.formula(2);
         self.elements += &format!("\n[[output]]\nname = \"told\"\nkind = \"formula\"\nof = {formula:?}\n");
+        self.vary_free_length(seed, &names);
         self.states(seed, coordinates[0], names);
+    }
+
+    /// Makes the free length of the first link that has one a formula, in half of the model files with laws.
+    fn vary_free_length(&mut self, seed: u64, names: &[String]) {
+        const KEY: &str = "free_length = ";
+        let mut dice = Dice::new(seed.rotate_left(37));
+        let Some(start) = self.elements.find(KEY).filter(|_| dice.once_in(2)) else { return };
+        let rest = &self.elements[start + KEY.len()..];
+        let line = rest.split('\n').next().unwrap_or_default();
+        let formula = Words { dice: &mut dice, names: names.to_vec() }.formula(1);
+        let varying = format!("{KEY}\"{} + 0.1*sin({formula})\"", line.trim_matches('"'));
+        self.elements = self.elements.replacen(&format!("{KEY}{line}"), &varying, 1);
     }
 
     /// States that forces depend on, in half of the model files with laws.

@@ -74,7 +74,7 @@ pub struct Page {
     /// Those that are computed from others.
     pub derived: Vec<(String, String)>,
     pub inputs: Vec<(String, String)>,
-    pub gravity: [String; 3],
+    pub gravity: String,
     pub bodies: Vec<(Hold, String)>,
     /// The tree that each body belongs to: a free body's own, or zero.
     pub roots: Vec<usize>,
@@ -104,7 +104,8 @@ impl Page {
         let mut dice = Dice::new(seed);
         let is_closed = dice.once_in(3);
         let gravity = if dice.once_in(4) { ["0", "0", "0"] } else { dice.pick(&GRAVITIES) };
-        Self {
+        let gravity = list(&gravity.map(str::to_owned));
+        let mut page = Self {
             dice,
             ways: None,
             rotors: Dice::new(!seed),
@@ -113,7 +114,7 @@ impl Page {
             parameters: Vec::new(),
             derived: Vec::new(),
             inputs: Vec::new(),
-            gravity: gravity.map(str::to_owned),
+            gravity,
             bodies: Vec::new(),
             roots: Vec::new(),
             held: Vec::new(),
@@ -126,7 +127,24 @@ impl Page {
             n_couplers: 0,
             early: Vec::new(),
             n_rough: 0,
+        };
+        page.attract(&mut Dice::new(seed.rotate_left(11)));
+        page
+    }
+
+    /// Puts a central body in the place of a uniform gravity, where no body is by chance.
+    fn attract(&mut self, dice: &mut Dice) {
+        if !dice.once_in(8) {
+            return;
         }
+        let (mu, centre) = (dice.pick(&["9.81", "25", "88.29"]), dice.pick(&CENTRES));
+        let mu = if dice.once_in(3) {
+            self.parameters.push(("mu".to_owned(), mu.to_owned()));
+            "\"mu\""
+        } else {
+            mu
+        };
+        self.gravity = format!("{{ mu = {mu}, centre = {centre} }}");
     }
 
     /// The number itself or, seldom, a parameter that has it as its default.
@@ -198,7 +216,7 @@ impl Page {
 
     /// The model file's text.
     pub fn text(&self) -> String {
-        let mut text = format!("format = 1\nname = {:?}\ngravity = {}\n", self.name, list(&self.gravity));
+        let mut text = format!("format = 1\nname = {:?}\ngravity = {}\n", self.name, self.gravity);
         // What is computed may stand before what it is computed from.
         let parameters: Vec<_> = self.derived.iter().chain(&self.parameters).cloned().collect();
         let mut inputs = self.inputs.clone();
@@ -240,6 +258,8 @@ const GRAVITIES: [[&str; 3]; 5] = [
     ["9.81", "0", "0"],
     ["0.5", "-9", "1.25"],
 ];
+
+const CENTRES: [&str; 4] = ["[0.02, 0, -0.03]", "[0.37, -2.9, 1.13]", "[0, 0, -3.07]", "[-1.21, 0.43, 0.17]"];
 
 pub fn list(numbers: &[String]) -> String {
     format!("[{}]", numbers.join(", "))

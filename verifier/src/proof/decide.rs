@@ -59,6 +59,10 @@ pub struct Decider<'a, const L: usize> {
 /// but for the sum of a number and of the root of its square, which is zero at every other point.
 const DRAWS_BY_ZERO: usize = 32;
 
+/// Looks at so many points for one at which all roots of a claim exist, which is every 2ⁿ-th of n roots: only the roots
+/// are computed there.
+const SEARCHED: u64 = 16 * DRAWS;
+
 /// The way to a point at which all roots exist. Those of parameters are found one group after the other, as many as
 /// there are: parameters whose roots all exist stay as they are.
 struct Search<F: Field> {
@@ -181,7 +185,7 @@ impl<'a, const L: usize> Decider<'a, L> {
         let roots_reach = statements.formulas.reach(roots.iter().map(|&(root, _)| root));
         let groups: Vec<_> = roots.iter().map(|&(_, radicand)| statements.parameters_of(radicand)).collect();
         let (mut zeros, mut search) = (Vec::new(), None::<Search<_>>);
-        for number in 0..DRAWS {
+        for number in 0..SEARCHED {
             let Some((new, atoms)) = self.draw(statements.module, seed, number) else { continue };
             let draw = match search.take() {
                 Some(search) => search.next(new),

@@ -8,7 +8,7 @@ use super::load::Load;
 use super::pose::Moving;
 use super::sparse::Sparse;
 use crate::field::Field;
-use gyro_model::Support;
+use gyro_model::{Attraction, Support};
 
 impl<F: Field> Evaluation<'_, F> {
     /// `diag(M, J')` of eq. (17), (s̈, ẇ') body after body, and `J b bᵀ` of armatures.
@@ -42,10 +42,11 @@ impl<F: Field> Evaluation<'_, F> {
 
     /// `(f, n' − w̃'J'w')` body after body, less `J b (ḃ·v)` of armatures; gravity is eq. (21).
     pub fn applied_force(&self) -> Option<Vec<F>> {
-        let (loads, gravity) = (self.forces()?.loads, self.gravity());
+        let loads = self.forces()?.loads;
         let mut applied = Vec::new();
         for &body in &self.textbook.moving_bodies {
             let w = &self.moving[body].w;
+            let gravity = self.gravity_at(&self.moving[body].pose.r)?;
             let force = gravity.times(&self.mass(body)) + &loads[body].force;
             let torque = loads[body].torque.clone() - w.cross(&self.inertia(body).apply(w));
             applied.extend(force.0.into_iter().chain(torque.0).map(|x| x.value));
@@ -59,25 +60,26 @@ impl<F: Field> Evaluation<'_, F> {
         Some(applied)
     }
 
-    /// `(m g, 0)` body after body.
-    pub fn weights(&self) -> Vec<F> {
-        let (gravity, zero) = (self.gravity(), &self.scope.zero);
-        let weight = |&body: &usize| {
-            let weight = gravity.times(&self.mass(body));
-            weight.0.into_iter().chain([(); 3].map(|()| zero.clone())).map(|x| x.value)
-        };
-        self.textbook.moving_bodies.iter().flat_map(weight).collect()
+    /// `(m g, 0)` body after body, g being that of the body's place. `None` at the centre of a central body.
+    pub fn weights(&self) -> Option<Vec<F>> {
+        let mut all = Vec::new();
+        for &body in &self.textbook.moving_bodies {
+            let weight = self.gravity_at(&self.moving[body].pose.r)?.times(&self.mass(body));
+            all.extend(
+                weight.0.into_iter().chain([(); 3].map(|()| self.scope.zero.clone())).map(|x| x.value),
+            );
+        }
+        Some(all)
     }
 
-    /// Kinetic and potential energy: `½ Σ (m s·s + w'·J'w')` with `½ J (b·v)²` of armatures, `−Σ m g·r` and the energy
-    /// of springs.
+    /// Kinetic and potential energy: `½ Σ (m s·s + w'·J'w')` with `½ J (b·v)²` of armatures, `−Σ m g·r`, or `−Σ m μ/|r|`, and
+    /// the energy of springs.
     pub fn energy(&self) -> Option<[F; 2]> {
         let (mut twice_kinetic, mut potential) = (self.scope.zero.clone(), self.forces()?.potential);
-        let gravity = self.gravity();
         for &body in &self.textbook.moving_bodies {
             let (mass, Moving { pose, s, w }) = (self.mass(body), &self.moving[body]);
             twice_kinetic = twice_kinetic + &mass * s.dot(s) + w.dot(&self.inertia(body).apply(w));
-            potential = potential - mass * gravity.dot(&pose.r);
+            potential = potential + mass * self.potential_at(&pose.r)?;
         }
         for Rotor { inertia, rate, .. } in self.rotors() {
             twice_kinetic = twice_kinetic + inertia * &rate * &rate;
@@ -159,8 +161,28 @@ impl<F: Field> Evaluation<'_, F> {
         a.into_iter().zip(b).fold(self.scope.zero.value.clone(), |sum, (a, b)| sum.add(&a.mul(b)))
     }
 
-    pub(super) fn gravity(&self) -> Vector<F> {
-        self.scope.vector(&self.textbook.model.gravity)
+    /// The acceleration of what falls freely at a place: g, or `μ d/|d|³`, d leading to the central body.
+    pub(super) fn gravity_at(&self, place: &Vector<F>) -> Option<Vector<F>> {
+        let model = self.textbook.model;
+        let Some(Attraction { mu, centre }) = &model.attraction else {
+            return Some(self.scope.vector(&model.gravity));
+        };
+        let d = self.scope.vector(centre) - place.clone();
+        // A product of roots holds for any number in the place of the root.
+        let distance = self.scope.sqrt(&d.dot(&d))?;
+        let cube = &distance * &distance * &distance;
+        Some(d.times(&(self.scope.number(mu) * cube.reciprocal()?)))
+    }
+
+    /// The energy of a unit mass at a place: `−g·r`, or `−μ/|d|`.
+    fn potential_at(&self, place: &Vector<F>) -> Option<Jet<F>> {
+        let model = self.textbook.model;
+        let Some(Attraction { mu, centre }) = &model.attraction else {
+            return Some(-self.scope.vector(&model.gravity).dot(place));
+        };
+        let d = place.clone() - self.scope.vector(centre);
+        let distance = self.scope.sqrt(&d.dot(&d))?;
+        Some(-(self.scope.number(mu) * distance.reciprocal()?))
     }
 
     fn mass(&self, body: usize) -> Jet<F> {

@@ -111,7 +111,8 @@ impl<F: Field> Evaluation<'_, F> {
             OutputKind::Inertial(frame) => {
                 let [linear, _] = self.acceleration_of_point(frame, accelerations);
                 let moving = &self.moving[frame.body];
-                let felt = moving.pose.a.transposed().apply(&(linear - self.gravity()));
+                let gravity = self.gravity_at(&moving.pose.point(&self.scope.vector(&frame.point)))?;
+                let felt = moving.pose.a.transposed().apply(&(linear - gravity));
                 values(self.by_axes(frame, &felt)?, &self.by_axes(frame, &moving.w)?.0)
             }
             OutputKind::Reaction { joint } => {

@@ -1,7 +1,7 @@
 // Forces as arrows: weight, springs and dampers, loads and motors, reactions where the run has them. Torques are arcs about
 // their axis. Forces are all to one scale, and so are torques.
 import { Vector3 } from 'three';
-import { poseAt, valueAt } from '../data.js';
+import { amountOf, poseAt, valueAt } from '../data.js';
 import { add, cross, distance, dot, inGlobal, length, scale, turn, unit } from '../vector.js';
 import { alongJoints } from './efforts.js';
 import { looks } from './forms.js';
@@ -20,6 +20,7 @@ function linkForce(scene, link, t) {
     return { a, b, long: distance(a, b) };
   };
   const { a, b, long } = along(t);
+  if (link.force) return { a, b, force: scale(unit(add(b, a, -1)), amountOf(scene, link.force)(t)) };
   const rate = (along(t + dt).long - long) / dt;
   const force = -link.stiffness * (long - link.free_length) - link.damping * rate;
   return { a, b, force: scale(unit(add(b, a, -1)), force) };
@@ -39,13 +40,15 @@ function sources(scene) {
     } });
   }
   for (const load of mechanism.loads) {
+    const [force, torque] = [load.force, load.torque].map((vector) => vector.map((amount) => amountOf(scene, amount)));
+    const at = (vector, t) => vector.map((value) => value(t));
     found.push({ kind: 'load', at: (t) => {
       const pose = poseAt(scene, load.body, t);
-      return [[inGlobal(pose, load.point), load.in_body ? turn(pose, load.force) : load.force]];
+      return [[inGlobal(pose, load.point), load.in_body ? turn(pose, at(force, t)) : at(force, t)]];
     } });
     found.push({ kind: 'load', turns: true, at: (t) => {
       const pose = poseAt(scene, load.body, t);
-      return [[inGlobal(pose, load.point), load.in_body ? turn(pose, load.torque) : load.torque]];
+      return [[inGlobal(pose, load.point), load.in_body ? turn(pose, at(torque, t)) : at(torque, t)]];
     } });
   }
   found.push(...alongJoints(scene));

@@ -1,5 +1,5 @@
 // Forces and torques along the coordinates of joints, by their laws: springs, dampers, friction, stops, motors.
-import { poseAt, valueAt } from '../data.js';
+import { amountOf, poseAt, valueAt } from '../data.js';
 import { cross, inGlobal, scale, turn } from '../vector.js';
 
 // The smooth ramp of a stop and its slope, where the coordinate is past the limit by z.
@@ -32,22 +32,21 @@ function axisOf(coordinate, [first, second], poses) {
 /** What acts on the second body of a joint, along each of its coordinates, and against it on the first. */
 export function alongJoints(scene) {
   const { mechanism, columns, time } = scene;
-  const inputs = columns.filter(({ group }) => group === 'Inputs');
   const column = (of, title) => columns.find((each) => each.group === of && each.title === title)?.values;
   const at = (values, t) => (values ? valueAt(time, values, t) : 0);
   return (mechanism.efforts ?? []).map(({ joint, coordinate, title, law, numbers }) => {
     const [x, v] = [column('Joints', title), column('Rates', title)];
     const { ends } = mechanism.joints[joint];
+    const known = Object.entries(numbers).map(([name, amount]) => [name, amountOf(scene, amount)]);
     const turns = coordinate.endsWith('angle');
     return {
       kind: law === 'motor' ? 'load' : 'link',
       turns,
       twice: !turns,
       at: (t) => {
-        const known = Object.fromEntries(Object.entries(numbers).map(([name, number]) =>
-          [name, typeof number === 'number' ? number : number.sign * at(inputs[number.input]?.values, t)]));
+        const now = Object.fromEntries(known.map(([name, value]) => [name, value(t)]));
         const poses = ends.map(({ body }) => poseAt(scene, body, t));
-        const force = scale(axisOf(coordinate, ends, poses), LAWS[law](known, at(x, t), at(v, t)));
+        const force = scale(axisOf(coordinate, ends, poses), LAWS[law](now, at(x, t), at(v, t)));
         const [first, second] = ends.map(({ point }, k) => inGlobal(poses[k], point));
         return turns ? [[second, force]] : [[second, force], [first, scale(force, -1)]];
       },

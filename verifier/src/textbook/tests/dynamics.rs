@@ -105,7 +105,8 @@ fn needed(textbook: &Textbook, point: &Point<f64>, accelerations: &[f64], bob_is
     let inertia = Matrix(std::array::from_fn(|row| {
         std::array::from_fn(|column| Jet::constant(inertia[3 + row][3 + column]))
     }));
-    let force = (acceleration.s - evaluation.gravity()).times(&mass);
+    let gravity = evaluation.gravity_at(&bob.pose.r).expect("uniform gravity");
+    let force = (acceleration.s - gravity).times(&mass);
     let torque = inertia.apply(&acceleration.w) + bob.w.cross(&inertia.apply(&bob.w));
     let torque = bob.pose.a.apply(&torque);
     // About the second body's joint point.
