@@ -54,7 +54,9 @@ fn plant(linear: &Linear, controllers: &[Controller], model: &Model) -> Result<P
                 linear.outputs_by_state[index * n..(index + 1) * n].to_vec(),
                 inputs.iter().map(|input| linear.outputs_by_inputs[index * m + input]).collect(),
             ),
-            Seen::Time => (vec![0.0; n], vec![0.0; inputs.len()]),
+            Seen::Time | Seen::Input(..) | Seen::Distance(_) | Seen::DistanceRate(_) => {
+                (vec![0.0; n], vec![0.0; inputs.len()])
+            }
             Seen::Coordinate(joint, k) | Seen::Rate(joint, k) => {
                 let is_rate = matches!(what, Seen::Rate(..));
                 let at = linear.elements.iter().position(|element| is(element, joint, k, is_rate));

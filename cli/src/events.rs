@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::words::{count, number, table};
 use gyro_model::{Direction, Event, Model, Number, Spline};
 use gyro_program::elementary::Function;
-use gyro_runner::{Formula, Occurrence, Operation, Watch, What};
+use gyro_runner::{Formula, Occurrence, Operation, Seen, Watch, What};
 use gyro_sim::Elementary;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -47,10 +47,20 @@ pub(crate) fn watches(model: &Model) -> Vec<Watch> {
 
 /// A formula in numbers.
 pub(crate) fn formula(model: &Model, of: &gyro_model::Formula) -> Formula {
+    formula_of(model, of, |number| Operation::Number(model.value(number)), |what| seen(model, what))
+}
+
+/// A formula of these numbers, and of what it sees.
+pub(crate) fn formula_of(
+    model: &Model,
+    of: &gyro_model::Formula,
+    numbers: impl Fn(&Number) -> Operation,
+    see: impl Fn(gyro_model::Seen) -> Seen,
+) -> Formula {
     use gyro_model::Operation as Of;
     let one = |operation: &Of| match operation {
-        Of::Number(number) => Operation::Number(model.value(number)),
-        Of::Seen(what) => Operation::Seen(seen(model, *what)),
+        Of::Number(number) => numbers(number),
+        Of::Seen(what) => Operation::Seen(see(*what)),
         Of::Negative(a) => Operation::Negative(*a),
         Of::Sum(a, b) => Operation::Sum(*a, *b),
         Of::Difference(a, b) => Operation::Difference(*a, *b),

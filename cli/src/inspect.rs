@@ -150,6 +150,10 @@ impl Inspection {
         ]);
         text += "\nleft out\n";
         sheet.left_out.iter().chain(&sheet.spared).for_each(|what| text += &format!("  {what}\n"));
+        if !sheet.kinks.is_empty() {
+            text += "\nnot smooth\n";
+            sheet.kinks.iter().for_each(|place| text += &format!("  {place}\n"));
+        }
         text += "\noperations (+ − × ÷) of each function after each pass: every expression written out where it is used, equal ones\n\
                  computed once, products with reciprocals as quotients (what is emitted); its results that are always zero";
         text += if self.bytes.is_some() { "; bytes of machine code\n" } else { "\n" };
@@ -263,6 +267,7 @@ impl Inspection {
             "redundant": json::redundant(&self.model),
             "left_out": sheet.left_out,
             "spared": sheet.spared,
+            "not_smooth": sheet.kinks,
             "functions": functions,
             "saddle": self.saddle,
             "elements": self.elements.iter().map(|element| element.to_json(sheet)).collect::<Vec<_>>(),

@@ -51,6 +51,7 @@ pub(crate) fn object(
         "poses_stepped_over": summary.statistics.leaps,
         "poses_passed": poses(scene, &summary.statistics),
         "steps_limited_by_stability": summary.statistics.limited_by_stability,
+        "kinks_crossed": (!scene.start.kinks.is_empty()).then_some(summary.kinks_crossed),
         "chart_switches": summary.chart_switches,
         "run_time_s": summary.run_time_s,
         "warnings": verdict::warnings(scene, outcome),

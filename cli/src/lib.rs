@@ -31,6 +31,8 @@ mod inspect;
 mod interrupt;
 mod invocation;
 mod json;
+mod kinks;
+mod lapse;
 #[cfg(feature = "jit")]
 pub mod library;
 mod linear;

@@ -4,7 +4,7 @@ use crate::args::{Engine, Precision, SimulateArgs};
 use crate::choice::{Chosen, choose};
 use crate::failure::Failure;
 use crate::progress::Spinner;
-use crate::{contacts, controllers, events, files, inputs, paths, remarks};
+use crate::{contacts, controllers, events, files, inputs, kinks, paths, remarks};
 use gyro_model::{ForceKind, JointKind, Model, Move, Number, Rational, Support};
 use gyro_runner::{
     Approach, Controller, Coordinates, Correction, Input, Offers, Settings, Start, any_varies,
@@ -262,6 +262,7 @@ pub(crate) fn start(model: &Model, assembled: &gyro_model::Start) -> Start {
         observed_bodies: observed(model).into_iter().map(|(moving_body, _)| moving_body).collect(),
         controllers: controllers::controllers(model),
         watches: events::watches(model),
+        kinks: kinks::kinks(model),
         contacts: contacts::contacts(model),
         paths: paths::paths(model),
     }

@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::verdict::{self, Outcome, Verdict};
 use crate::write::{self, Known};
 use crate::{
-    columns, events, in_process, interrupt, json, linearization, nested, plot, remarks, summary, words,
+    columns, events, in_process, interrupt, json, lapse, linearization, nested, plot, remarks, summary, words,
 };
 use gyro_assembled::{QuickLookError, quick_look};
 use gyro_codegen::Module;
@@ -160,7 +160,10 @@ fn followed(
     };
     let summary = run(scene, &mut tell);
     progress.finish();
-    outcome.summary = summary.map_err(|failure| with_link(scene, outcome, failure))?;
+    outcome.summary = summary.map_err(|failure| {
+        let failure = with_link(scene, outcome, failure);
+        lapse::with_formula(scene, &outcome.samples, outcome.stopped.as_ref(), failure)
+    })?;
     Ok(())
 }
 

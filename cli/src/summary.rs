@@ -288,6 +288,9 @@ fn quality(scene: &Scene, samples: &[Sample], run: &Summary, last: &Sample) -> S
         rows.push(vec!["chart switches".to_owned(), run.chart_switches.to_string()]);
     }
     rows.extend(cost(scene, &run.statistics));
+    if !scene.start.kinks.is_empty() {
+        rows.push(vec!["kinks of laws crossed".to_owned(), run.kinks_crossed.to_string()]);
+    }
     rows.push(vec!["samples".to_owned(), samples.len().to_string()]);
     rows.push(vec!["run time".to_owned(), format!("{} s", number(run.run_time_s, FEW))]);
     format!("\n{}", table(&rows))

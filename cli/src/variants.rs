@@ -150,7 +150,7 @@ fn of_force_mut(kind: &mut OutputKind) -> Option<&mut usize> {
 /// An output that takes no operation, in the place of one that others count from.
 fn nothing() -> OutputKind {
     let operations = vec![Operation::Number(Number::integer(0))];
-    OutputKind::Formula(Formula { text: "0".to_owned(), operations })
+    OutputKind::Formula(Formula::smooth("0", operations))
 }
 
 fn zeros() -> [Number; 3] {

@@ -8,7 +8,7 @@ use crate::args::{Engine, Precision};
 use crate::failure::Failure;
 use crate::scene::Scene;
 use crate::words::{count, number, table};
-use crate::{columns, eigenvalues, equilibrium, remarks};
+use crate::{columns, eigenvalues, equilibrium, kinks, lapse, remarks};
 use gyro_model::{Model, RowOwner};
 use gyro_runner::motion::Linear;
 use gyro_runner::{
@@ -198,7 +198,9 @@ pub(crate) fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<String> {
     let reasons = gyro_runner::balance(&outcome.summary, scene.is_balanced).into_iter();
     let all =
         reasons.map(|reason| reason.to_string()).chain(passage_words(scene, &outcome.summary.statistics));
-    all.map(|words| format!("{words} --verify tells how far the result can be trusted.")).collect()
+    let all = all.map(|words| format!("{words} --verify tells how far the result can be trusted."));
+    let stay = kinks::stay(&scene.start.kinks, &outcome.summary);
+    all.chain(stay).chain(lapse::of_outputs(scene, &outcome.samples)).collect()
 }
 
 /// That steps of fixed length have passed singular poses, if they have.

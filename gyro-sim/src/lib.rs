@@ -141,7 +141,7 @@ pub use correct::{
 pub use dual::{ByDuals, Dual};
 pub use integrate::{Dop853, Kutta4, Rk4, Rodas4, Tsit5};
 pub use scalar::{Elementary, Lanes, Real, Scalar};
-pub use solver::{Control, Passage, Solver, Statistics};
+pub use solver::{Control, Passage, Solver, Statistics, Tried};
 pub use turns::{JointCoordinate, Turns, keep_turns, refer_turns};
 pub use violation::{Violation, violation};
 

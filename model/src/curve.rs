@@ -117,6 +117,19 @@ impl Curve {
         (self.beyond == Beyond::Error).then_some(self.ends)
     }
 
+    /// The arguments at which its value or its slope jumps.
+    pub fn corners(&self) -> Vec<f64> {
+        let knots =
+            self.spline.knots.iter().copied().filter(|knot| (self.ends[0]..=self.ends[1]).contains(knot));
+        let is_end = |knot: &f64| self.ends.contains(knot);
+        match (self.joined, self.beyond) {
+            (Joined::Steps, _) | (Joined::Linear, Beyond::Hold) => knots.collect(),
+            (Joined::Linear, _) => knots.filter(|knot| !is_end(knot)).collect(),
+            (_, Beyond::Hold) => self.ends.to_vec(),
+            _ => Vec::new(),
+        }
+    }
+
     /// Whether it has two continuous derivatives wherever it has a value.
     pub fn is_smooth(&self) -> bool {
         self.joined == Joined::Smooth && self.beyond != Beyond::Hold

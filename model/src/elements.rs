@@ -1,8 +1,7 @@
 //! What acts between and on bodies besides joints: couplers, drivers, forces; and outputs.
 
-use std::slice::from_ref;
-
 use crate::{BodyFrame, Bushing, CoordinateUse, Formula, JointCoordinate, Motion, Number, Seen};
+use std::slice::from_ref;
 
 /// A joint coordinate that follows others: one row, the coordinate less what it is to be.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ mod computation;
 mod formula;
 
 pub use computation::Computation;
-pub use formula::{Formula, Operation};
+pub use formula::{Formula, Kink, Levels, Operation};
 
 use std::sync::Arc;
 

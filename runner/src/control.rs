@@ -1,5 +1,6 @@
 //! Sampled controllers in a run: what they see is read from the motion, what they set is set in the mechanism.
 
+use crate::line::Line;
 use gyro_sim::Real;
 use gyro_sim::sampled::{
     Controller as Law, Limited, Period, Pid, Quantised, Sampled, StateFeedback, TransferFunction,
@@ -47,8 +48,8 @@ impl Default for Wiring {
     }
 }
 
-/// A number that a controller sees.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, SerBin, DeBin)]
+/// A number that controllers, events and kinks see.
+#[derive(Clone, Copy, Debug, PartialEq, SerBin, DeBin)]
 pub enum Seen {
     /// Index among the numbers of all outputs.
     Output(usize),
@@ -58,6 +59,12 @@ pub enum Seen {
     Rate(usize, usize),
     /// The time.
     Time,
+    /// An input, its value where the run does not set it, and a factor of 1 or −1; of kinks alone.
+    Input(usize, f64, f64),
+    /// The distance of two points; of kinks alone.
+    Distance(Line),
+    /// The rate of that; of kinks alone.
+    DistanceRate(Line),
 }
 
 const MOST: usize = 16;

@@ -3,12 +3,14 @@
 mod advance;
 mod control;
 mod halt;
+mod kinks;
 mod sides;
 mod start;
 mod state;
 mod watch;
 
 use halt::Halt;
+use kinks::Laws;
 pub use start::Start;
 pub(crate) use state::state;
 
@@ -29,7 +31,8 @@ use crate::{
     Tracker, describe_in,
 };
 use gyro_sim::{
-    CorrectedDynamics, Dynamics, Error, JointCoordinate, JointLayout, Partition, Real, Scalar, Turns, contact,
+    Control, CorrectedDynamics, Dynamics, Error, JointCoordinate, JointLayout, Partition, Real, Scalar,
+    Turns, contact,
 };
 use sides::Sides;
 use std::io;
@@ -119,6 +122,7 @@ pub fn run_by<M: Partition<Scalar: Real> + Clone + 'static>(
     match outcome {
         Ok(()) => Ok(run.summary),
         Err(Halt::Output(error)) => Err(Failure::Output(error)),
+        Err(Halt::Law(words)) => Err(Failure::run(words)),
         Err(Halt::Motion(error)) => {
             run.tell_state(&mut told).map_err(Failure::Output)?;
             let solver = match error {
@@ -252,10 +256,13 @@ struct Run<'a, M: Partition<Scalar: Real>> {
     taken_at: f64,
     controllers: Controllers<M::Scalar>,
     watches: Watches<M::Scalar>,
+    laws: Laws,
     paths: Paths,
     steps_at_once: u64,
     /// Fixed steps that may yet be taken; under error control the solver counts them.
     budget: u64,
+    /// What it counts to.
+    most_steps: u64,
     /// The maximal state when it was last looked at.
     y: M::State,
     sides: Sides,
@@ -283,8 +290,10 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
             taken_at: if approach.meets_knots { 0.5 } else { 0.0 },
             controllers: Controllers::new(&start.controllers),
             watches: Watches::new(&start.watches),
+            laws: Laws::new(&start.kinks),
             steps_at_once: if any_varies(&start.inputs)
                 || !start.watches.is_empty()
+                || !start.kinks.is_empty()
                 || !start.contacts.is_empty()
                 || !paths.is_empty()
             {
@@ -294,6 +303,7 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
             },
             paths,
             budget: approach.budget.unwrap_or(u64::MAX),
+            most_steps: approach.budget.unwrap_or(Control::default().budget),
             turns: Turns::new(mechanism, Scalar::constant(0.0), &y, &angles),
             read_at: 0.0,
             observer: Observer::new(mechanism, &start.observed_bodies),
@@ -312,6 +322,7 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
     ) -> Result<(), Halt> {
         let mut tracker = Tracker::default();
         self.record(0.0, (builder, approach), &mut tracker, told)?;
+        self.count_kinks(0.0);
         let knots = if approach.meets_knots { self.knots() } else { Vec::new() };
         for segment in Schedule::new(settings).ending_at(knots) {
             match approach.tolerance {
@@ -326,6 +337,9 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
                 self.record(segment.to, (builder, approach), &mut tracker, told)?;
             }
             told.progress(segment.to)?;
+        }
+        if approach.tolerance.is_some() && self.motion.time() <= settings.t_end {
+            self.count_kinks(self.read_at);
         }
         if let Some(linear) = approach.examine.then(|| self.linearised(builder, settings.t_end)).flatten() {
             (told.tell)(Event::Linear(&linear))?;

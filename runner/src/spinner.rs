@@ -48,6 +48,7 @@ impl Spinner {
             observed_bodies: vec![0],
             controllers: vec![],
             watches: vec![],
+            kinks: vec![],
             contacts: vec![],
             paths: vec![],
         }

@@ -2,6 +2,7 @@
 
 use crate::Sample;
 use crate::companion::rate;
+use crate::kink::Stay;
 use gyro_sim::Statistics;
 use nanoserde::{DeBin, SerBin};
 
@@ -23,6 +24,10 @@ pub struct Summary {
     pub energy_drift: f64,
     /// Seconds spent stepping and correcting, without samples and their output.
     pub run_time_s: f64,
+    /// How often a kink of a law has been crossed.
+    pub kinks_crossed: u64,
+    /// The first kink that the motion has stayed at, under error control.
+    pub stay: Option<Stay>,
     /// What the steps have cost and met.
     pub statistics: Statistics,
     /// The smallest pivot of the constraint Jacobian at any sample; `None` if it was not requested, or the engine does

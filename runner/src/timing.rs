@@ -29,7 +29,8 @@ pub fn time_by<M: Partition<Scalar: Real> + Clone + 'static>(
     budget: Duration,
 ) -> Result<Timing, Failure> {
     let settings = Settings { sample_every: settings.t_end, ..scheduled(settings, approach) };
-    if !start.controllers.is_empty() {
+    let ends_at_kinks = approach.tolerance.is_some() && !start.kinks.is_empty();
+    if !start.controllers.is_empty() || ends_at_kinks {
         return in_closed_loops(mechanism, builder, (&settings, approach), start, budget);
     }
     let y = state(mechanism, start)?;
@@ -43,7 +44,7 @@ pub fn time_by<M: Partition<Scalar: Real> + Clone + 'static>(
             // As the motion counts time: in single precision the end may come before this number.
             let t_end = M::Scalar::constant(settings.t_end).to_f64();
             while motion.time() < t_end {
-                motion.step_towards(mechanism, t_end).map_err(in_words)?;
+                motion.step_towards(mechanism, t_end, &mut |_| None).map_err(in_words)?;
                 motion.resolve(mechanism, &mut |_| ());
             }
         } else {

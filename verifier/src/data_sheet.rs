@@ -92,6 +92,7 @@ fn expected_head(model: &Model, module: &Module) -> Vec<String> {
         ));
     }
     lines.extend(left_out(model, module).into_iter().map(|what| format!("* left out: {what}")));
+    lines.extend(model.kinks_in_words().into_iter().map(|place| format!("* not smooth: {place}")));
     lines.push(ROUNDING.to_owned());
     let table =
         ["", "| function | computes | + − | × | ÷ | total | zeros |", "|---|---|---|---|---|---|---|"];

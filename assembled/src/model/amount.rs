@@ -26,7 +26,7 @@ pub(crate) enum Amount<T> {
 /// A formula, with what stands at each of its operations that has no operands, and the curves that it calls.
 #[derive(Clone, Debug)]
 pub(crate) struct Written<T> {
-    formula: Formula,
+    pub(crate) formula: Formula,
     leaves: Vec<Option<Leaf<T>>>,
     curves: Curves,
 }
@@ -122,10 +122,12 @@ impl<T: Number> Amount<T> {
         match self {
             Self::Constant(value) => *value,
             Self::Input(index, sign) => now.scene.inputs[*index].1 * *sign,
-            Self::Formula(formula) => {
-                let Written { formula, leaves, curves } = &**formula;
-                let leaf = |place: usize| leaves[place].as_ref().map_or(T::zero(), |leaf| leaf.value(now));
-                value(formula, leaf, curves)
+            Self::Formula(written) => {
+                let value = written.formula.value(|operation, values: &[T]| {
+                    Ok::<_, Infallible>(written.operation(operation, values, now))
+                });
+                let Ok(value) = value;
+                value
             }
         }
     }
@@ -263,25 +265,25 @@ fn call_with_slope<T: Number>(function: Function, [(x, dx), (y, dy)]: [(T, T); 2
     (value, slope)
 }
 
-/// The value of a formula, given the numbers that it begins with, by the places of their operations.
-fn value<T: Number>(formula: &Formula, leaf: impl Fn(usize) -> T, curves: &Curves) -> T {
-    let value = formula.value(|operation, values: &[T]| {
-        Ok::<_, Infallible>(match operation {
-            Operation::Number(_) | Operation::Seen(_) => leaf(values.len()),
+impl<T: Number> Written<T> {
+    /// The value of an operation, given those of the ones before it.
+    pub(crate) fn operation(&self, operation: &Operation, values: &[T], now: &Now<'_, T>) -> T {
+        match operation {
+            Operation::Number(_) | Operation::Seen(_) => {
+                self.leaves[values.len()].as_ref().map_or(T::zero(), |leaf| leaf.value(now))
+            }
             Operation::Negative(a) => -values[*a],
             Operation::Sum(a, b) => values[*a] + values[*b],
             Operation::Difference(a, b) => values[*a] - values[*b],
             Operation::Product(a, b) => values[*a] * values[*b],
             Operation::Quotient(a, b) => values[*a] / values[*b],
             Operation::Power(a, exponent) => power(values[*a], *exponent),
-            Operation::Call(function, operands) => match curves.jet(*function, values[operands[0]]) {
+            Operation::Call(function, operands) => match self.curves.jet(*function, values[operands[0]]) {
                 Some([value, ..]) => value,
                 None => call(*function, operands.map(|a| values[a])),
             },
-        })
-    });
-    let Ok(value) = value;
-    value
+        }
+    }
 }
 
 fn power<T: Number>(base: T, exponent: i32) -> T {

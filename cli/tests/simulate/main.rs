@@ -9,6 +9,7 @@ mod contacts;
 mod controllers;
 mod curves;
 mod defaults;
+mod edges;
 mod elements;
 mod events;
 mod excavator;
@@ -69,6 +70,7 @@ fn json_is_one_object_and_both_engines_give_the_same() {
             "integrator",
             "jacobians",
             "joints",
+            "kinks_crossed",
             "method",
             "model",
             "norm_violation",

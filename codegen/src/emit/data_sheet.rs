@@ -34,6 +34,8 @@ pub struct DataSheet {
     pub left_out: Vec<String>,
     /// The same, where only the derivation knows of it: the module does not state what the verifier cannot check.
     pub spared: Vec<String>,
+    /// Where formulas have kinks or jumps, a line for each element whose they are.
+    pub kinks: Vec<String>,
     /// The functions that compute something.
     pub functions: Vec<Function>,
 }
@@ -76,6 +78,7 @@ impl DataSheet {
             phi_pi: equations.phi_pi.len(),
             left_out: left_out(equations),
             spared: spared(equations),
+            kinks: model.kinks_in_words(),
             functions: (kernels.iter())
                 .map(|kernel| {
                     let repetition = exact[&kernel.0].repetition;
@@ -152,6 +155,7 @@ impl DataSheet {
             ));
         }
         lines.extend(self.left_out.iter().map(|what| format!("* left out: {what}")));
+        lines.extend(self.kinks.iter().map(|place| format!("* not smooth: {place}")));
         lines.push(format!("* rounding: at most {ROUNDING} times that of the best form compared"));
         lines.extend(
             ["", "| function | computes | + − | × | ÷ | total | zeros |", "|---|---|---|---|---|---|---|"]

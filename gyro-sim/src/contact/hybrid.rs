@@ -9,7 +9,7 @@ use crate::contract::Storage;
 use crate::events::{Found, first_falling};
 use crate::integrate::Method;
 use crate::solver::Mark;
-use crate::{Control, Correction, Real, Solver, Statistics, Uncorrected};
+use crate::{Control, Correction, Real, Solver, Statistics, Tried, Uncorrected};
 
 /// A motion with contacts, by any method that is explicit.
 #[derive(Clone, Debug)]
@@ -202,24 +202,29 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         A: Method<Contacts<D, T, N>, M>,
         C: Correction<D, M>,
     {
-        let is_event = self.move_towards(model, t_end)?;
+        let is_event = self.move_towards(model, t_end, |_| None)?;
         self.resolve(model);
         Ok(is_event)
     }
 
     /// The same, with the state as it is just before the event: the motion within the step can be asked for, and
-    /// [`Hybrid::resolve`] decides what happens.
+    /// [`Hybrid::resolve`] decides what happens; `watch` has a say in each attempt, as in [`Solver::step_watched`].
     ///
     /// # Errors
     /// As [`Hybrid::advance_to`].
-    pub fn move_towards<M>(&mut self, model: &M, t_end: T) -> Result<bool, Error>
+    pub fn move_towards<M>(
+        &mut self,
+        model: &M,
+        t_end: T,
+        watch: impl FnMut(&mut dyn Tried<Contacts<D, T, N>, S, T>) -> Option<T>,
+    ) -> Result<bool, Error>
     where
         D: Forced<M, Scalar = T, State = S>,
         A: Method<Contacts<D, T, N>, M>,
         C: Correction<D, M>,
     {
         self.begin(model)?;
-        self.solver.step_towards(model, t_end).map_err(|error| self.reason(error))?;
+        self.solver.step_watched(model, t_end, watch).map_err(|error| self.reason(error))?;
         self.pin();
         let h = self.solver.last_step();
         let Some(next) = self.find(model)? else {

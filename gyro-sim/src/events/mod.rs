@@ -60,7 +60,7 @@
 mod root;
 mod scan;
 
-pub(crate) use root::root;
+pub use root::root;
 use scan::scan;
 pub(crate) use scan::{Found, first_falling};
 

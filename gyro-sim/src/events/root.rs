@@ -8,7 +8,10 @@ const MAX_EVALUATIONS: u32 = 128;
 /// A root between two places where a function has different signs, to rounding: of the last two places that bracket it,
 /// the one where the function is smaller. By inverse quadratic interpolation where that is safe, else by halving: T. R.
 /// Chandrupatla (1997).
-pub(crate) fn root<T: Real, E>(
+///
+/// # Errors
+/// Those of the function.
+pub fn root<T: Real, E>(
     mut f: impl FnMut(T) -> Result<T, E>,
     (a, fa): (T, T),
     (b, fb): (T, T),

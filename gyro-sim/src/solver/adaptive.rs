@@ -1,6 +1,7 @@
 //! Steps under error control.
 
 use super::poses::Approach;
+use super::watched::{Tried, Watched};
 use super::{STIFF_STEPS, Solver};
 use crate::contract::Storage;
 use crate::correct::check_time;
@@ -67,21 +68,53 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         A: Method<D, M>,
         C: Correction<D, M>,
     {
-        self.try_towards(system, t_end).map_err(|error| self.blame(system, error))
+        self.step_watched(system, t_end, |_| None)
     }
 
-    fn try_towards<M>(&mut self, system: &M, t_end: T) -> Result<(), Error>
+    /// The same, with a say in each attempt before it is judged: where `watch` has a time within the attempt, it is
+    /// repeated, not beyond that time. Attempts so repeated count as rejected, and the length that steps have by the
+    /// tolerances stays what it is.
+    ///
+    /// # Errors
+    /// As [`Solver::step_towards`].
+    pub fn step_watched<M>(
+        &mut self,
+        system: &M,
+        t_end: T,
+        watch: impl FnMut(&mut dyn Tried<D, S, T>) -> Option<T>,
+    ) -> Result<(), Error>
+    where
+        D: Ode<M, Scalar = T, State = S>,
+        A: Method<D, M>,
+        C: Correction<D, M>,
+    {
+        self.try_towards(system, t_end, watch).map_err(|error| self.blame(system, error))
+    }
+
+    fn try_towards<M>(
+        &mut self,
+        system: &M,
+        t_end: T,
+        mut watch: impl FnMut(&mut dyn Tried<D, S, T>) -> Option<T>,
+    ) -> Result<(), Error>
     where
         D: Ode<M, Scalar = T, State = S>,
         A: Method<D, M>,
         C: Correction<D, M>,
     {
         self.is_repeated = false;
+        let mut stop = t_end;
         loop {
-            let Some(attempt) = self.propose(system, t_end)? else { return Ok(()) };
+            let Some(attempt) = self.propose(system, stop)? else { return Ok(()) };
             self.attempt(system, attempt.h);
-            if self.judge(system, &attempt)? {
-                return Ok(());
+            let (start, end) = (self.t, attempt.after.0);
+            match watch(&mut Watched::new(self, system, (attempt.h, end))) {
+                Some(earlier) if start < earlier && earlier < end => {
+                    self.statistics.rejected += 1;
+                    stop = earlier;
+                }
+                _ if self.judge(system, &attempt)? => return Ok(()),
+                _ => {}
             }
         }
     }
@@ -223,7 +256,7 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
     }
 
     /// What is tolerated of each element, from its larger size at either end of the step.
-    fn weigh<M>(&mut self)
+    pub(super) fn weigh<M>(&mut self)
     where
         D: Ode<M, Scalar = T, State = S>,
         A: Method<D, M>,

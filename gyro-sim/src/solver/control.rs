@@ -75,3 +75,10 @@ pub struct Statistics {
     /// The first of them.
     pub first_passage: Option<Passage>,
 }
+
+impl Statistics {
+    /// All steps that were tried: kept or repeated.
+    pub fn tried(&self) -> u64 {
+        self.accepted + self.rejected
+    }
+}

@@ -6,6 +6,7 @@ mod passages;
 mod past;
 mod poses;
 mod rewind;
+mod watched;
 
 use crate::contract::Storage;
 use crate::correct::{check_finite, check_time};
@@ -20,6 +21,7 @@ pub use passages::Passage;
 use past::Past;
 use poses::{Approach, Watch};
 pub(crate) use rewind::Mark;
+pub use watched::Tried;
 
 /// A simulation in progress: equations, a method, a correction, the time and the state.
 ///

@@ -12,6 +12,32 @@ pub struct Formula {
     pub text: String,
     /// The operations, of which there is at least one.
     pub operations: Vec<Operation>,
+    /// The names in the text, each with the place of its value; `None` where it is part of another number.
+    pub names: Vec<(String, Option<usize>)>,
+    /// Where it is not smooth.
+    pub kinks: Vec<Kink>,
+}
+
+/// Where a formula has a kink or a jump.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Kink {
+    /// The place, in the words of the model file, such as `length = 1.8`.
+    pub words: String,
+    /// The operation whose value tells.
+    pub of: usize,
+    /// At which of its values.
+    pub at: Levels,
+}
+
+/// At which values of its argument something has a kink or a jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Levels {
+    /// At zero.
+    Zero,
+    /// At whole numbers.
+    Whole,
+    /// At the corners of a curve of the model, by its place: see [`Curve::corners`](crate::Curve::corners).
+    Curve(usize),
 }
 
 /// An operation of a formula. Operands are the places of earlier ones.
@@ -40,12 +66,18 @@ pub enum Operation {
 impl Formula {
     /// One number of the mechanism, by its name.
     pub fn seen(name: &str, seen: Seen) -> Self {
-        Self { text: name.to_owned(), operations: vec![Operation::Seen(seen)] }
+        let names = vec![(name.trim().to_owned(), Some(0))];
+        Self { names, ..Self::smooth(name, vec![Operation::Seen(seen)]) }
+    }
+
+    /// Operations, of which there is at least one, without names or kinks.
+    pub fn smooth(text: &str, operations: Vec<Operation>) -> Self {
+        Self { text: text.to_owned(), operations, names: Vec::new(), kinks: Vec::new() }
     }
 
     /// Nothing.
     pub(crate) fn zero() -> Self {
-        Self { text: "0".to_owned(), operations: vec![Operation::Number(Number::integer(0))] }
+        Self::smooth("0", vec![Operation::Number(Number::integer(0))])
     }
 
     /// It less another.
@@ -56,7 +88,10 @@ impl Formula {
         let mut operations = self.operations.clone();
         operations.extend(other.operations.iter().map(|operation| operation.moved(|place| place + shift)));
         operations.push(Operation::Difference(first, operations.len() - 1));
-        Self { text, operations }
+        let (mut names, mut kinks) = (self.names.clone(), self.kinks.clone());
+        names.extend(other.names.iter().map(|(name, at)| (name.clone(), at.map(|place| place + shift))));
+        kinks.extend(other.kinks.iter().map(|kink| Kink { of: kink.of + shift, ..kink.clone() }));
+        Self { text, operations, names, kinks }
     }
 
     /// The value, given how to compute an operation from the values of earlier ones.

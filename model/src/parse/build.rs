@@ -13,8 +13,8 @@ pub(super) struct Build {
 }
 
 impl Build {
-    /// The operations that one of them needs, with it as the last.
-    pub(super) fn up_to(&self, last: usize) -> Vec<Operation> {
+    /// The operations that one of them needs, with it as the last, and where each of all of them is among these.
+    pub(super) fn up_to(&self, last: usize) -> (Vec<Operation>, Vec<Option<usize>>) {
         reachable(&self.operations, last)
     }
 
@@ -148,8 +148,8 @@ fn is_short(number: &Number) -> bool {
     }
 }
 
-/// The operations that the last of them needs.
-fn reachable(operations: &[Operation], last: usize) -> Vec<Operation> {
+/// The operations that the last of them needs, and the new places of all.
+fn reachable(operations: &[Operation], last: usize) -> (Vec<Operation>, Vec<Option<usize>>) {
     let mut is_needed = vec![false; operations.len()];
     is_needed[last] = true;
     for place in (0..=last).rev().filter(|&place| place <= last) {
@@ -157,11 +157,11 @@ fn reachable(operations: &[Operation], last: usize) -> Vec<Operation> {
             operations[place].operands().for_each(|operand| is_needed[operand] = true);
         }
     }
-    let mut places = vec![0; operations.len()];
+    let mut places = vec![None; operations.len()];
     let mut kept = Vec::new();
     for (place, operation) in operations.iter().enumerate().filter(|(place, _)| is_needed[*place]) {
-        places[place] = kept.len();
-        kept.push(operation.moved(|operand| places[operand]));
+        places[place] = Some(kept.len());
+        kept.push(operation.moved(|operand| places[operand].expect("what it needs is kept before it")));
     }
-    kept
+    (kept, places)
 }

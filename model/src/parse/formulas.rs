@@ -8,7 +8,7 @@ use super::names;
 use super::seen::Known;
 use super::units::pi;
 use crate::number::in_range;
-use crate::{Curve, Formula, Model, Number, Operation, Seen, parse_decimal};
+use crate::{Curve, Formula, Kink, Levels, Model, Number, Operation, Seen, parse_decimal};
 
 /// What names in formulas mean, and which of them a place allows.
 pub(super) struct Named<'m> {
@@ -53,9 +53,17 @@ impl Named<'_> {
         }
         let is_known = |name: &str| self.column(name).is_some() || (self.number)(name).is_some();
         let term = expression::parse(text).map_err(|at| syntax(text, at, &is_known))?;
-        let mut reading = Reading { named: self, build: Build::default() };
+        let mut reading =
+            Reading { named: self, text, build: Build::default(), names: Vec::new(), kinks: Vec::new() };
         let last = reading.of(&term)?;
-        Ok(Formula { text: text.to_owned(), operations: reading.build.up_to(last) })
+        let Reading { build, names, mut kinks, .. } = reading;
+        kinks.sort_by_key(|(start, _)| *start);
+        let (operations, places) = build.up_to(last);
+        let names = names.into_iter().map(|(name, place)| (name, places[place])).collect();
+        let moved = |(_, kink): (usize, Kink)| places[kink.of].map(|of| Kink { of, ..kink });
+        let is_number = |kink: &Kink| matches!(operations[kink.of], Operation::Number(_));
+        let kinks = kinks.into_iter().filter_map(moved).filter(|kink| !is_number(kink)).collect();
+        Ok(Formula { text: text.to_owned(), operations, names, kinks })
     }
 
     /// The same, which must not be a constant.
@@ -73,7 +81,12 @@ impl Named<'_> {
 /// A text that becomes a formula.
 struct Reading<'b, 'm> {
     named: &'b Named<'m>,
+    text: &'b str,
     build: Build,
+    /// Names, each once, and the places of their values.
+    names: Vec<(String, usize)>,
+    /// Kinks, each once, and where the text comes to them.
+    kinks: Vec<(usize, Kink)>,
 }
 
 impl Reading<'_, '_> {
@@ -152,6 +165,7 @@ impl Reading<'_, '_> {
                     };
                     return Err(fault(divisor, "a formula divides by zero", help));
                 }
+                self.note_kinks(name, operands, &places);
                 let mut curves = self.named.curves.iter().enumerate();
                 Ok(match curves.find(|(_, curve)| curve.name == name) {
                     Some((index, curve)) => self.build.curve((index, curve), places[0]),
@@ -167,6 +181,15 @@ impl Reading<'_, '_> {
     }
 
     fn name(&mut self, term: &Term, name: &str) -> Result<usize, Fault> {
+        let place = self.meant(term, name)?;
+        if self.names.iter().all(|(known, _)| known != name) {
+            self.names.push((name.to_owned(), place));
+        }
+        Ok(place)
+    }
+
+    /// The place of what a name denotes.
+    fn meant(&mut self, term: &Term, name: &str) -> Result<usize, Fault> {
         let named = self.named;
         let formula = named.formulas.iter().find(|(known, _)| known == name);
         match (named.column(name), (named.number)(name), formula) {
@@ -219,6 +242,11 @@ impl Reading<'_, '_> {
             };
             places.push(place);
         }
+        for kink in &formula.kinks {
+            let within =
+                if kink.words.contains(WITHIN) { String::new() } else { format!("{WITHIN}`{name}`") };
+            self.note(term, format!("{}{within}", kink.words), places[kink.of], kink.at);
+        }
         Ok(places[places.len() - 1])
     }
 
@@ -227,10 +255,12 @@ impl Reading<'_, '_> {
         Ok(match &condition.kind {
             Kind::Greater(x, y) => {
                 let margin = self.two(x, y, Build::difference)?;
+                self.note_equal([x, y], margin);
                 self.build.where_positive(margin, [a, b])
             }
             Kind::AtLeast(x, y) => {
                 let margin = self.two(y, x, Build::difference)?;
+                self.note_equal([x, y], margin);
                 self.build.where_positive(margin, [b, a])
             }
             Kind::And(p, q) => {
@@ -276,6 +306,58 @@ impl Reading<'_, '_> {
         }
         let root = self.build.root(base);
         Ok(self.build.product(power, root))
+    }
+}
+
+/// What stands between the place of a kink and the name of the formula whose it is.
+const WITHIN: &str = " in formula ";
+
+/// Where formulas are not smooth.
+impl Reading<'_, '_> {
+    /// A kink, once.
+    fn note(&mut self, term: &Term, words: String, of: usize, at: Levels) {
+        if self.kinks.iter().all(|(_, kink)| (kink.of, kink.at) != (of, at)) {
+            self.kinks.push((term.span.start, Kink { words, of, at }));
+        }
+    }
+
+    /// A kink where two terms are equal, in the order of the text.
+    fn note_equal(&mut self, [x, y]: [&Term; 2], margin: usize) {
+        let [first, second] = if x.span.start < y.span.start { [x, y] } else { [y, x] };
+        let words = format!("{} = {}", self.written(first), self.written(second));
+        self.note(first, words, margin, Levels::Zero);
+    }
+
+    /// The kinks of a function of operands at these places.
+    fn note_kinks(&mut self, name: &str, operands: &[Term], places: &[usize]) {
+        let (operand, first) = (&operands[0], self.written(&operands[0]));
+        match (name, operands, places) {
+            ("abs" | "sign", _, &[x]) => self.note(operand, format!("{first} = 0"), x, Levels::Zero),
+            ("floor", _, &[x]) => self.note(operand, format!("{first} is whole"), x, Levels::Whole),
+            ("min" | "max", [a, b], &[x, y]) => {
+                let margin = self.build.difference(y, x);
+                self.note_equal([a, b], margin);
+            }
+            ("mod", [_, divisor], &[x, y]) => {
+                let quotient = self.build.quotient(x, y);
+                let words = format!("{first} is a multiple of {}", self.written(divisor));
+                self.note(operand, words, quotient, Levels::Whole);
+            }
+            (_, _, &[x]) => {
+                let curve = self.named.curves.iter().position(|curve| curve.name == name);
+                let Some(curve) = curve.filter(|curve| !self.named.curves[*curve].corners().is_empty())
+                else {
+                    return;
+                };
+                self.note(operand, format!("{first} is at a corner of `{name}`"), x, Levels::Curve(curve));
+            }
+            _ => {}
+        }
+    }
+
+    fn written(&self, term: &Term) -> String {
+        let words: Vec<&str> = self.text[term.span.clone()].split_whitespace().collect();
+        words.join(" ")
     }
 }
 

@@ -188,3 +188,48 @@ fn strengths_without_motion_are_numbers() {
     assert!(matches!(motor("-0.01*u"), Number::Formula(_)));
     assert!(matches!(motor("x"), Number::Formula(_)));
 }
+
+#[test]
+fn kinks_are_told_in_the_words_of_the_text() {
+    let page = |law: &str| {
+        format!(
+            "{PAGE}[[curve]]\nname = \"slip\"\npoints = [[-1, 0], [0, 1], [2, 1]]\nbetween = \"linear\"\n[[curve]]\n\
+             name = \"soft\"\npoints = [[-1, 0], [0, 1], [2, 1]]\nbeyond = \"line\"\n[[formula]]\nname = \"size\"\n\
+             of = \"abs(x - k)\"\n[[force]]\nname = \"law\"\nkind = \"motor\"\njoint = \"x\"\nvalue = {law:?}\n"
+        )
+    };
+    let cases: [(&str, &[&str]); 10] = [
+        ("abs( x  - half )", &["x - half = 0"]),
+        ("sign(x rate)*sin(x) + abs(x rate)", &["x rate = 0"]),
+        ("min(x, 3) + max(x rate, x)", &["x = 3", "x rate = x"]),
+        ("if(x > 1 and 2 <= t or not(x rate < k), x, 0)", &["x = 1", "2 = t", "x rate = k"]),
+        ("floor(3*x) + mod(x, 2*pi)", &["3*x is whole", "x is a multiple of 2*pi"]),
+        ("slip(x + t) + soft(x)", &["x + t is at a corner of `slip`"]),
+        ("size^2 + size", &["x - k = 0 in formula `size`"]),
+        // What is smooth, or no kink of what moves.
+        ("step(x, 0, 0, 1, 1) + ramp(x, 0.1) + tanh(x)", &[]),
+        ("abs(k - 3)*x + floor(2.5) + min(k, half)", &[]),
+        ("x*if(k > 1, 2, 3)", &[]),
+    ];
+    for (law, places) in cases {
+        let model = read("page.toml", &page(law)).unwrap();
+        let expected: Vec<String> =
+            if places.is_empty() { vec![] } else { vec![format!("force `law` where {}", places.join(", "))] };
+        assert_eq!(model.kinks_in_words(), expected, "{law}");
+    }
+}
+
+#[test]
+fn the_places_of_names_and_kinks_have_their_values() {
+    let model = read("page.toml", PAGE).unwrap();
+    let formula = model.formula("min(double, 3*x rate) + k*t + half").unwrap();
+    let at = [0.3, -0.7, 1.9];
+    let of = |place: usize| value(&model, &Formula::smooth("", formula.operations[..=place].to_vec()), at);
+    let named = |name: &str| formula.names.iter().find(|(known, _)| known == name).unwrap().1.map(of);
+    assert_eq!(formula.names.len(), 5);
+    assert_eq!(named("double"), Some(2.0 * (0.3 + 0.5)));
+    assert_eq!(named("x rate"), Some(-0.7));
+    assert_eq!(named("t"), Some(1.9));
+    assert_eq!(formula.kinks.len(), 1);
+    assert_eq!(of(formula.kinks[0].of).abs(), (2.0 * (0.3 + 0.5) + 3.0 * 0.7_f64).abs());
+}

@@ -1,5 +1,6 @@
 //! What a motion is, and what there is to begin one with.
 
+use super::attempt::Look;
 use super::course::Course;
 use crate::approach::Approach;
 use crate::input::Input;
@@ -24,11 +25,16 @@ pub trait Motion<M: Mechanism> {
     /// # Errors
     /// [`contact::Error`], where nothing touches of the solver.
     fn step(&mut self, mechanism: &M, h: f64) -> Result<(), contact::Error>;
-    /// One step under error control, not beyond `t_end`.
+    /// One step under error control, not beyond `t_end`; `look` has a say in each attempt.
     ///
     /// # Errors
     /// [`contact::Error`], where nothing touches of the solver.
-    fn step_towards(&mut self, mechanism: &M, t_end: f64) -> Result<(), contact::Error>;
+    fn step_towards(
+        &mut self,
+        mechanism: &M,
+        t_end: f64,
+        look: &mut Look<'_, M>,
+    ) -> Result<(), contact::Error>;
     /// Corrects the state.
     ///
     /// # Errors

@@ -1,5 +1,6 @@
 //! A motion under way, whatever integrates it.
 
+mod attempt;
 mod builders;
 mod contract;
 mod correction;
@@ -14,6 +15,7 @@ mod moving;
 mod single;
 mod touching;
 
+pub use attempt::{Attempt, Look};
 pub use builders::{Any, Projecting, Tree, TreeWithJacobian, WithDuals};
 pub use contract::{COLUMNS, Element, Linear, Maximal, Motion, MotionBuilder, OperatingPoint};
 pub use course::Course;

@@ -1,5 +1,6 @@
 //! A solver under way.
 
+use super::attempt::{Look, Shown};
 use super::contract::Motion;
 use super::course::Course;
 use super::feed::{Around, Fed};
@@ -105,7 +106,7 @@ where
 }
 
 macro_rules! motion {
-    ($type:ident, |$self:ident, $mechanism:ident, $t_end:ident| $towards:expr) => {
+    ($type:ident, |$self:ident, $mechanism:ident, $t_end:ident, $look:pat_param| $towards:expr) => {
         impl<M, L, A, C> Motion<M> for $type<L, M, L::State, A, C>
         where
             M: Mechanism<Scalar: Real> + 'static,
@@ -116,7 +117,12 @@ macro_rules! motion {
             fn step(&mut self, mechanism: &M, h: f64) -> Result<(), contact::Error> {
                 Ok(self.0.step(mechanism, Scalar::constant(h))?)
             }
-            fn step_towards(&mut $self, $mechanism: &M, $t_end: f64) -> Result<(), contact::Error> {
+            fn step_towards(
+                &mut $self,
+                $mechanism: &M,
+                $t_end: f64,
+                $look: &mut Look<'_, M>,
+            ) -> Result<(), contact::Error> {
                 Ok($towards?)
             }
             fn correct(&mut self, mechanism: &M) -> Result<(), Error> {
@@ -161,12 +167,18 @@ macro_rules! motion {
     };
 }
 
-motion!(Adaptive, |self, mechanism, t_end| {
-    let t_end = self.before_knot(t_end);
-    self.0.step_towards(mechanism, Scalar::constant(t_end))
+motion!(Adaptive, |self, mechanism, t_end, look| {
+    let t_end = Scalar::constant(self.before_knot(t_end));
+    let mut x = self.0.state().clone();
+    self.0.step_watched(mechanism, t_end, |tried| {
+        let show = |dynamics: &Fed<L, M>, t, x: &L::State, y: &mut M::State| {
+            dynamics.lens.show(mechanism, t, x, y);
+        };
+        look(&mut Shown { tried, x: &mut x, show }).map(Scalar::constant)
+    })
 });
 
-motion!(Fixed, |self, mechanism, t_end| {
+motion!(Fixed, |self, mechanism, t_end, _| {
     let h = t_end - self.time();
     self.0.step(mechanism, Scalar::constant(h))
 });

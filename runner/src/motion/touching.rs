@@ -1,5 +1,6 @@
 //! A motion with rigid stops and friction that sticks, under way.
 
+use super::attempt::{Look, Shown};
 use super::contract::Motion;
 use super::course::Course;
 use super::feed::{Around, Fed};
@@ -42,7 +43,7 @@ where
         fixed A => Box::new(Contacting {
             hybrid: begin(mechanism, A::new(x), correction, (approach, x), touches)?,
             // It has no error estimate: one step.
-            towards: |hybrid, mechanism, t_end| hybrid.move_by(mechanism, t_end - hybrid.time()),
+            towards: |hybrid, mechanism, t_end, _| hybrid.move_by(mechanism, t_end - hybrid.time()),
             course: None,
         }),
         adaptive A => adaptive(begin(mechanism, A::new(x), correction, (approach, x), touches)?),
@@ -81,14 +82,26 @@ where
     A: Method<Contacts<Fed<Joint, M>, M::Scalar, MOST>, M> + 'static,
     C: Correction<Joint, M> + 'static,
 {
-    let towards: Towards<M, A, C> =
-        |hybrid, mechanism, t_end| hybrid.move_towards(mechanism, t_end).map(|_| ());
+    let towards: Towards<M, A, C> = |hybrid, mechanism, t_end, look| {
+        let mut x = hybrid.state().clone();
+        let watched = hybrid.move_towards(mechanism, t_end, |tried| {
+            let show = |_: &Contacts<Fed<Joint, M>, M::Scalar, MOST>, t, x: &M::Joints, y: &mut M::State| {
+                Joint.show(mechanism, t, x, y);
+            };
+            look(&mut Shown { tried, x: &mut x, show }).map(Scalar::constant)
+        });
+        watched.map(|_| ())
+    };
     Box::new(Contacting { hybrid, towards, course: None })
 }
 
 /// One step, not beyond a time.
-type Towards<M, A, C> =
-    fn(&mut Touching<M, A, C>, &M, <M as gyro_sim::Mechanism>::Scalar) -> Result<(), contact::Error>;
+type Towards<M, A, C> = fn(
+    &mut Touching<M, A, C>,
+    &M,
+    <M as gyro_sim::Mechanism>::Scalar,
+    &mut Look<'_, M>,
+) -> Result<(), contact::Error>;
 
 /// A contact along a coordinate of the joint state.
 fn contact<M: JointSpace<Scalar: Real>>(mechanism: &M, touch: &Touch) -> Result<Contact<M::Scalar>, String> {
@@ -136,7 +149,12 @@ where
         self.hybrid.move_by(mechanism, Scalar::constant(h))
     }
 
-    fn step_towards(&mut self, mechanism: &M, t_end: f64) -> Result<(), contact::Error> {
+    fn step_towards(
+        &mut self,
+        mechanism: &M,
+        t_end: f64,
+        look: &mut Look<'_, M>,
+    ) -> Result<(), contact::Error> {
         let mut t_end = t_end;
         if let Some(course) = &mut self.course {
             if let Some(knot) = course.pass::<M::Scalar>(self.hybrid.time().to_f64()) {
@@ -145,7 +163,7 @@ where
             }
             t_end = course.ahead::<M::Scalar>().map_or(t_end, |knot| knot.min(t_end));
         }
-        (self.towards)(&mut self.hybrid, mechanism, Scalar::constant(t_end))
+        (self.towards)(&mut self.hybrid, mechanism, Scalar::constant(t_end), look)
     }
 
     fn correct(&mut self, mechanism: &M) -> Result<(), Error> {

@@ -1,8 +1,8 @@
 use super::*;
 use crate::motion::Element;
 use crate::{
-    BodySample, Controller, Coordinates, Correction, Input, Integrator, JointSample, Seen, Touch, Watch,
-    What, When, Wiring,
+    BodySample, Controller, Coordinates, Correction, End, Input, Integrator, JointSample, Kink, Levels, Line,
+    Seen, Stay, Touch, Watch, What, When, Wiring,
 };
 use crate::{Formula, Operation, Path};
 use gyro_sim::Elementary;
@@ -55,6 +55,21 @@ fn a_request_comes_back_bit_by_bit() {
                     limits: Some([AWKWARD[1], AWKWARD[6]]),
                     ..Controller::default()
                 }],
+                kinks: vec![
+                    Kink {
+                        words: "force `wire` where length = 1".to_owned(),
+                        of: Formula(vec![Operation::Seen(Seen::DistanceRate(Line([
+                            End { slot: None, point: [AWKWARD[0], 0.0, AWKWARD[1]] },
+                            End { slot: Some(3), point: [0.0; 3] },
+                        ])))]),
+                        at: Levels::At(vec![AWKWARD[1], AWKWARD[4]]),
+                    },
+                    Kink {
+                        words: "force `wire` where length = 1".to_owned(),
+                        of: Formula(vec![Operation::Seen(Seen::Input(2, AWKWARD[3], -1.0))]),
+                        at: Levels::Whole,
+                    },
+                ],
                 watches: vec![Watch {
                     of: Formula(vec![
                         Operation::Seen(Seen::Rate(1, 0)),
@@ -106,8 +121,14 @@ fn replies_come_back_bit_by_bit() {
         norm_violation: 1e-18,
         chart_switches: 7,
     };
-    let summary =
-        Summary { steps: 10_000, chart_switches: 32, smallest_pivot: Some(0.5), ..Default::default() };
+    let summary = Summary {
+        steps: 10_000,
+        chart_switches: 32,
+        smallest_pivot: Some(0.5),
+        kinks_crossed: 9,
+        stay: Some(Stay { kink: 3, t: AWKWARD[2] }),
+        ..Default::default()
+    };
     let first = Passage { t: AWKWARD[0], pivot: AWKWARD[4], owner: Some(Owner::Driver(3)) };
     let passed = Summary {
         statistics: Statistics { passages: 2, first_passage: Some(first), ..Statistics::default() },

@@ -46,6 +46,7 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
             self.look_into_step(from, told)?;
             self.resolve(told)?;
             self.read_turns(self.motion.time())?;
+            self.count_kinks(self.read_at);
             told.progress(self.motion.time())?;
         }
         if segment.corrects && self.watches.end.is_none() {
@@ -76,7 +77,7 @@ impl<M: Partition<Scalar: Real> + Clone> Run<'_, M> {
             self.look_for_jumps(told)?;
             let from = self.motion.time();
             let next = M::Scalar::constant(self.controllers.next()).to_f64();
-            self.motion.step_towards(self.mechanism, settings.t_end.min(next))?;
+            self.step_towards(settings.t_end.min(next), settings.t_end)?;
             if approach.leaves_stiff {
                 self.refuse_stiff(settings.t_end)?;
             }

@@ -6,6 +6,8 @@ use std::io;
 /// Why a run ends before its time.
 pub(super) enum Halt {
     Motion(contact::Error),
+    /// A law, and what is the matter with it.
+    Law(String),
     Output(io::Error),
 }
 

@@ -2,7 +2,7 @@
 
 use crate::control::Controller;
 use crate::path::Path;
-use crate::{Input, Touch, Watch};
+use crate::{Input, Kink, Touch, Watch};
 use nanoserde::{DeBin, SerBin};
 
 /// Where a run starts, what its inputs are set to and what is watched besides joints and outputs.
@@ -31,6 +31,8 @@ pub struct Start {
     pub controllers: Vec<Controller>,
     /// Events that are looked for, at most [`Watch::MOST`].
     pub watches: Vec<Watch>,
+    /// Kinks of laws: steps under error control end there, others that go over them are counted.
+    pub kinks: Vec<Kink>,
     /// Rigid stops and friction that sticks, at most [`Touch::MOST`].
     pub contacts: Vec<Touch>,
 }

@@ -27,6 +27,7 @@ pub(super) fn seen<M: Mechanism<Scalar: Real>>(
         Seen::Coordinate(joint, k) => scalar(joint, k)[0],
         Seen::Rate(joint, k) => scalar(joint, k)[1],
         Seen::Time => t,
+        Seen::Input(..) | Seen::Distance(_) | Seen::DistanceRate(_) => Scalar::constant(f64::NAN),
     }
 }
 

@@ -36,8 +36,8 @@ const LINES: usize = 500;
 const STAGES: [(&str, &str); 5] = [
     (
         "model",
-        "scalar coordinate number spatial lines spline curve sight motion frames state elements directions joint_kind shape keys kinematics tree \
-         controller event contact validate assemble diagnostics numbers redundancy parse queries",
+        "scalar coordinate number attraction spatial lines spline curve sight motion frames state elements directions joint_kind shape keys kinematics tree \
+         controller event contact sites validate assemble diagnostics numbers redundancy parse queries",
     ),
     (
         "codegen",
@@ -50,12 +50,12 @@ const STAGES: [(&str, &str); 5] = [
     ),
     (
         "runner",
-        "approach schedule offers advice batch input touch path control formula watch failure pivots motion forecast \
+        "approach schedule offers advice batch input touch path line control formula kink watch failure pivots motion forecast \
          sample companion summary grade spectrum run timing protocol child linkage loops remark spinner",
     ),
     (
         "cli",
-        "failure words side_by_side remarks args progress choice contacts controllers events write files paths inputs scene runs \
+        "failure words side_by_side remarks args progress choice contacts controllers events kinks write files paths inputs scene lapse runs \
          invocation places rounding chain stability verify interrupt programs machine_code runtime nested batches \
          cache columns eigenvalues equilibrium verdict folder proof in_process closed_loop linearization json plot \
          spectrum fit linear compare summary simulate answer generate export show check variants inspect urdf library machine \

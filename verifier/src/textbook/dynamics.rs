@@ -72,8 +72,8 @@ impl<F: Field> Evaluation<'_, F> {
         Some(all)
     }
 
-    /// Kinetic and potential energy: `½ Σ (m s·s + w'·J'w')` with `½ J (b·v)²` of armatures, `−Σ m g·r`, or `−Σ m μ/|r|`, and
-    /// the energy of springs.
+    /// Kinetic and potential energy: `½ Σ (m s·s + w'·J'w')` with `½ J (b·v)²` of armatures, `−Σ m g·r`, or
+    /// `−Σ m μ/|r|`, and the energy of springs.
     pub fn energy(&self) -> Option<[F; 2]> {
         let (mut twice_kinetic, mut potential) = (self.scope.zero.clone(), self.forces()?.potential);
         for &body in &self.textbook.moving_bodies {

@@ -113,8 +113,8 @@ impl<F: Field> Evaluation<'_, F> {
         Some(push - damping * slope * self.coordinate_rate(*on))
     }
 
-    /// Of a spring its force and how far it is from where it is free; of a link its thrust, its length and how fast that
-    /// grows.
+    /// Of a spring its force and how far it is from where it is free; of a link its thrust, its length and how fast
+    /// that grows.
     pub(super) fn elastic(&self, force: usize) -> Option<Vec<F>> {
         let numbers = match &self.textbook.model.forces[force].kind {
             ForceKind::Spring { on, stiffness, free } => {

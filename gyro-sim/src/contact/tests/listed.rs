@@ -182,7 +182,7 @@ fn under_error_control_nothing_is_listed_that_has_not_happened() {
                 assert_eq!(found, Ok(()), "case {case} at {t}: {changes:?}\n{before:?}\n{after:?}");
             }
             // A jam ends a motion by its name.
-            if t >= T_END || motion.move_towards(&(), T_END).is_err() {
+            if t >= T_END || motion.move_towards(&(), T_END, |_| None).is_err() {
                 break;
             }
             before = *motion.state();
@@ -259,7 +259,7 @@ fn a_series_of_rebounds_ends_without_an_impact_on_the_other_stop() {
             let change = motion.changes()[0];
             assert!(change.hit.is_none_or(|[before, _]| before > 0.0), "{e}: {change:?} {}", motion.time());
             rests += u32::from(change.phases[0] != Phase::AtUpper && change.phases[1] == Phase::AtUpper);
-            motion.move_towards(&(), 5.0).unwrap();
+            motion.move_towards(&(), 5.0, |_| None).unwrap();
         }
         assert!(rests > 0, "{e} {:?} {:?}", motion.record(), motion.phases());
     }
