@@ -8,7 +8,7 @@ use crate::words::{number, table};
 use discrete::{Discrete, Plant};
 use gyro_model::Model;
 use gyro_runner::motion::{Element, Linear};
-use gyro_runner::{Controller, Seen};
+use gyro_runner::{Controller, Formula, Operation, Seen};
 use gyro_sim::JointPlace;
 use margins::Margins;
 use nalgebra::{Complex, DMatrix};
@@ -27,6 +27,14 @@ struct Closed {
 
 fn closed(model: &Model, linear: &Linear) -> Result<Closed, String> {
     let controllers = controllers(model);
+    let follows = |formula: &Formula| {
+        formula.0.iter().any(|operation| matches!(operation, Operation::Seen(what) if *what != Seen::Time))
+    };
+    let following = controllers.iter().position(|controller| controller.setpoints.iter().any(follows));
+    if let Some(index) = following {
+        let name = &model.controllers[index].name;
+        return Err(format!("a set point of `{name}` depends on the motion or on an input"));
+    }
     let plant = plant(linear, &controllers, model)?;
     let discrete = Discrete::new(&plant, &controllers)?;
     let of = |index: usize| {

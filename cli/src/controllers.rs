@@ -1,13 +1,14 @@
 //! Controllers of a model as a run has them.
 
+use crate::formulas::{number_in_runs, seen};
 use crate::remarks;
 use crate::words::{count, number};
-use gyro_model::{Law, Model, to_f64};
-use gyro_runner::{Controller, Seen, Wiring};
+use gyro_model::{Law, Model, Number, to_f64};
+use gyro_runner::{Controller, Wiring};
 
 /// The controllers of a model with its parameters as they are.
 pub(crate) fn controllers(model: &Model) -> Vec<Controller> {
-    let value = |number: &gyro_model::Number| model.value(number);
+    let value = |number: &Number| model.value(number);
     let one = |controller: &gyro_model::Controller| Controller {
         law: match &controller.law {
             Law::Pid { gains } => Wiring::Pid(gains.each_ref().map(value)),
@@ -20,34 +21,16 @@ pub(crate) fn controllers(model: &Model) -> Vec<Controller> {
                 Wiring::TransferFunction(numerator, denominator)
             }
         },
-        outputs: controller.outputs.iter().map(|seen| self::seen(model, *seen)).collect(),
+        outputs: controller.outputs.iter().map(|what| seen(model, *what)).collect(),
         inputs: controller.inputs.iter().map(|&index| (index, to_f64(&model.inputs[index].value))).collect(),
         period: controller.period,
         delay: to_f64(&controller.delay),
-        setpoints: controller.setpoints.iter().map(value).collect(),
+        setpoints: controller.setpoints.iter().map(|number| number_in_runs(model, number)).collect(),
         limits: controller.limits.as_ref().map(|limits| limits.each_ref().map(value)),
         output_steps: controller.output_steps.iter().map(value).collect(),
         input_step: value(&controller.input_step),
     };
     model.controllers.iter().map(one).collect()
-}
-
-pub(crate) fn seen(model: &Model, seen: gyro_model::Seen) -> Seen {
-    match seen {
-        gyro_model::Seen::Output { output, number } => {
-            let before = model.outputs[..output].iter().map(|output| output.kind.columns().len());
-            Seen::Output(before.sum::<usize>() + number)
-        }
-        gyro_model::Seen::Coordinate(on) => Seen::Coordinate(on.joint, on.coordinate),
-        gyro_model::Seen::Rate(on) => Seen::Rate(on.joint, on.coordinate),
-        gyro_model::Seen::Time => Seen::Time,
-        gyro_model::Seen::Length
-        | gyro_model::Seen::LengthRate
-        | gyro_model::Seen::Between(_)
-        | gyro_model::Seen::BetweenRate(_) => {
-            unreachable!("what is between the ends of a force is known in its own law only")
-        }
-    }
 }
 
 /// The controller that sets an input.

@@ -1,13 +1,11 @@
 //! Events of a run: what is looked for, and the list of what was found.
 
 use crate::args::EventSetting;
-use crate::controllers::seen;
 use crate::failure::Failure;
+use crate::formulas::formula;
 use crate::words::{count, number, table};
-use gyro_model::{Direction, Event, Model, Number, Spline};
-use gyro_program::elementary::Function;
-use gyro_runner::{Formula, Occurrence, Operation, Seen, Watch, What};
-use gyro_sim::Elementary;
+use gyro_model::{Direction, Event, Model, Number};
+use gyro_runner::{Occurrence, Watch, What};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -43,42 +41,6 @@ pub(crate) fn watches(model: &Model) -> Vec<Watch> {
         stops: event.stops,
     };
     model.events.iter().map(one).collect()
-}
-
-/// A formula in numbers.
-pub(crate) fn formula(model: &Model, of: &gyro_model::Formula) -> Formula {
-    formula_of(model, of, |number| Operation::Number(model.value(number)), |what| seen(model, what))
-}
-
-/// A formula of these numbers, and of what it sees.
-pub(crate) fn formula_of(
-    model: &Model,
-    of: &gyro_model::Formula,
-    numbers: impl Fn(&Number) -> Operation,
-    see: impl Fn(gyro_model::Seen) -> Seen,
-) -> Formula {
-    use gyro_model::Operation as Of;
-    let one = |operation: &Of| match operation {
-        Of::Number(number) => numbers(number),
-        Of::Seen(what) => Operation::Seen(see(*what)),
-        Of::Negative(a) => Operation::Negative(*a),
-        Of::Sum(a, b) => Operation::Sum(*a, *b),
-        Of::Difference(a, b) => Operation::Difference(*a, *b),
-        Of::Product(a, b) => Operation::Product(*a, *b),
-        Of::Quotient(a, b) => Operation::Quotient(*a, *b),
-        Of::Power(base, exponent) => Operation::Power(*base, *exponent),
-        Of::Call(Function::Curve { curve, .. }, [at, _]) => {
-            let Spline { knots, pieces, .. } = model.curves[usize::from(*curve)].spline.clone();
-            Operation::Curve { knots, pieces, at: *at }
-        }
-        Of::Call(function, operands) => Operation::Call(elementary(*function), *operands),
-    };
-    Formula(of.operations.iter().map(one).collect())
-}
-
-/// Both tables of elementary functions have one order, see the test.
-fn elementary(function: Function) -> Elementary {
-    Elementary::ALL[function.place().expect("curves are none of them")]
 }
 
 /// Refuses a model whose events end runs.
@@ -185,17 +147,4 @@ pub(crate) fn csv(model: &Model, occurrences: &[Occurrence]) -> String {
         }
     }
     text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn elementary_functions_are_in_one_order() {
-        for function in Function::ALL {
-            assert_eq!(format!("{function:?}"), format!("{:?}", elementary(function)));
-        }
-        assert_eq!(Function::ALL.len(), Elementary::ALL.len());
-    }
 }

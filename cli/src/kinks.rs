@@ -1,8 +1,7 @@
 //! Kinks of laws, as runs end steps there and count them.
 
-use crate::controllers;
-use crate::events::formula_of;
-use gyro_model::{ForceKind, Formula, Model, Number, Operation, Quaternion, Support, Vector, to_f64};
+use crate::formulas::{formula_of, seen};
+use gyro_model::{ForceKind, Formula, Model, Number, Operation, Quaternion, Support, Vector};
 use gyro_runner::{End, Kink, Levels, Line, Seen, Stay, Summary};
 
 /// The kinks of a model's laws, each once: those that the state tells of, without what is seen between frames of a
@@ -15,21 +14,14 @@ pub(crate) fn kinks(model: &Model) -> Vec<Kink> {
         let see = |what| match what {
             gyro_model::Seen::Length => Seen::Distance(line),
             gyro_model::Seen::LengthRate => Seen::DistanceRate(line),
-            other => controllers::seen(model, other),
+            other => seen(model, other),
         };
         let at = match kink.at {
             gyro_model::Levels::Zero => Levels::At(vec![0.0]),
             gyro_model::Levels::Whole => Levels::Whole,
             gyro_model::Levels::Curve(curve) => Levels::At(model.curves[curve].corners()),
         };
-        let numbers = |number: &Number| match number {
-            Number::Input { index, negated } => {
-                let default = to_f64(&model.inputs[*index].value);
-                gyro_runner::Operation::Seen(Seen::Input(*index, default, if *negated { -1.0 } else { 1.0 }))
-            }
-            number => gyro_runner::Operation::Number(model.value(number)),
-        };
-        let of = formula_of(model, &told, numbers, see);
+        let of = formula_of(model, &told, see);
         let words = format!("{} where {}", site.owner, kink.words);
         if kinks.iter().all(|known: &Kink| (&known.of, &known.at) != (&of, &at)) {
             let kink = Kink { words, of, at };

@@ -24,6 +24,7 @@ pub mod failure;
 pub mod files;
 mod fit;
 mod folder;
+mod formulas;
 pub mod generate;
 mod in_process;
 mod inputs;

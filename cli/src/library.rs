@@ -4,9 +4,8 @@
 
 use crate::args::{Engine, InputSetting, SimulateArgs};
 use crate::columns;
-use crate::controllers::seen;
-use crate::events;
 use crate::failure::Failure;
+use crate::formulas::{formula, seen};
 use crate::in_process;
 use crate::invocation::with_suggestion;
 use crate::runs::Runs;
@@ -233,14 +232,14 @@ impl Run {
     /// It has mistakes.
     pub fn formula(&self, text: &str) -> Result<Vec<f64>, Failure> {
         let model = &self.scene.model;
-        let formula = events::formula(model, &model.formula(text).map_err(Failure::Usage)?);
+        let of = formula(model, &model.formula(text).map_err(Failure::Usage)?);
         let columns = self.columns();
         let values =
             |name: &str| columns.iter().find(|column| column.name == name).map(|column| &column.values);
         let visible = model.visible().into_iter().map(|(name, what)| (seen(model, what), values(&name)));
         let visible: Vec<_> = visible.chain([(Seen::Time, values("t"))]).collect();
         let value = |sample: usize| {
-            formula.value(&|what: Seen| {
+            of.value(&|what: Seen| {
                 let found = visible.iter().find(|(known, _)| *known == what);
                 found.and_then(|(_, values)| values.as_ref()?.get(sample).copied()).unwrap_or(f64::NAN)
             })

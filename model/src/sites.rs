@@ -23,7 +23,7 @@ impl Site<'_> {
 }
 
 impl Model {
-    /// All formulas of forces, states, couplers, motions, outputs and events, in this order.
+    /// All formulas of forces, states, couplers, motions, outputs, events and set points, in this order.
     pub fn sites(&self) -> Vec<Site<'_>> {
         let mut sites = Vec::new();
         for force in &self.forces {
@@ -69,12 +69,19 @@ impl Model {
         for event in &self.events {
             add("", format!("event `{}`", event.name), &event.of);
         }
+        for controller in &self.controllers {
+            for formula in controller.setpoints.iter().filter_map(Number::formula) {
+                add("a set point of", format!("controller `{}`", controller.name), formula);
+            }
+        }
         sites
     }
 
     /// The kinks of all formulas that a motion depends on: whose they are, and where.
     pub fn kinks(&self) -> Vec<(Site<'_>, &Kink)> {
-        let is_told = |site: &Site<'_>| ["output", "event"].iter().any(|word| site.owner.starts_with(word));
+        let is_told = |site: &Site<'_>| {
+            ["output", "event", "controller"].iter().any(|word| site.owner.starts_with(word))
+        };
         let sites = self.sites().into_iter().filter(|site| !is_told(site));
         sites.flat_map(|site| site.formula.kinks.iter().map(move |kink| (site.clone(), kink))).collect()
     }

@@ -1,5 +1,6 @@
 //! Sampled controllers in a run: what they see is read from the motion, what they set is set in the mechanism.
 
+use crate::formula::Formula;
 use crate::line::Line;
 use gyro_sim::Real;
 use gyro_sim::sampled::{
@@ -20,8 +21,8 @@ pub struct Controller {
     pub period: [u64; 2],
     /// From a sample to its effect, s; not more than a period.
     pub delay: f64,
-    /// What the outputs are to be.
-    pub setpoints: Vec<f64>,
+    /// What the outputs are to be, as it is at a sample.
+    pub setpoints: Vec<Formula>,
     /// The least and the largest value of each input.
     pub limits: Option<[f64; 2]>,
     /// The steps to which outputs are rounded; zero: they are not.
@@ -59,7 +60,7 @@ pub enum Seen {
     Rate(usize, usize),
     /// The time.
     Time,
-    /// An input, its value where the run does not set it, and a factor of 1 or −1; of kinks alone.
+    /// An input, its value where the run does not set it, and a factor of 1 or −1; of kinks and set points.
     Input(usize, f64, f64),
     /// The distance of two points; of kinks alone.
     Distance(Line),
@@ -95,21 +96,20 @@ impl Controller {
 
     fn wired<T: Real>(&self) -> Wired<T> {
         let all = |from: &[f64]| std::array::from_fn(|k| T::constant(from.get(k).copied().unwrap_or(0.0)));
-        let setpoints: [T; MOST] = all(&self.setpoints);
+        let zero = T::constant(0.0);
         match &self.law {
             Wiring::Pid(gains) => {
                 let limits = self.limits.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
                 let law = Pid::new(gains.map(T::constant), T::constant(self.period().seconds()));
-                Wired::Pid(law.with_setpoint(setpoints[0]).with_limits(limits.map(T::constant)))
+                Wired::Pid(law.with_limits(limits.map(T::constant)))
             }
             Wiring::StateFeedback(rows) => {
                 let gains = std::array::from_fn(|k| all(rows.get(k).map_or(&[], Vec::as_slice)));
-                Wired::StateFeedback(Box::new(StateFeedback { gains, reference: setpoints }))
+                Wired::StateFeedback(Box::new(StateFeedback { gains, reference: [zero; MOST] }))
             }
             Wiring::TransferFunction(numerator, denominator) => {
                 let (direct, [numerator, denominator]) = Self::normalised(numerator, denominator);
-                let mut law = TransferFunction::new(T::constant(direct), all(&numerator), all(&denominator));
-                law.reference = setpoints[0];
+                let law = TransferFunction::new(T::constant(direct), all(&numerator), all(&denominator));
                 Wired::TransferFunction(Box::new(law))
             }
         }
@@ -122,6 +122,16 @@ enum Wired<T> {
     Pid(Pid<T>),
     StateFeedback(Box<StateFeedback<T, MOST, MOST>>),
     TransferFunction(Box<TransferFunction<T, MOST>>),
+}
+
+impl<T: Real> Wired<T> {
+    fn follow(&mut self, setpoints: &[T; MOST]) {
+        match self {
+            Self::Pid(law) => law.setpoint = setpoints[0],
+            Self::StateFeedback(law) => law.reference = *setpoints,
+            Self::TransferFunction(law) => law.reference = setpoints[0],
+        }
+    }
 }
 
 impl<T: Real> Law<T> for Wired<T> {
@@ -140,6 +150,7 @@ struct Working<T> {
     sampled: Sampled<Quantised<Limited<Wired<T>, T>, T, MOST>, T, MOST>,
     sees: Vec<Seen>,
     seen: [T; MOST],
+    follows: Vec<Formula>,
     sets: Vec<usize>,
     held: [T; MOST],
 }
@@ -174,6 +185,11 @@ impl<T: Real> Controllers<T> {
             for (seen, measured) in working.seen.iter_mut().zip(&working.sees) {
                 *seen = see(*measured);
             }
+            let mut setpoints = [T::constant(0.0); MOST];
+            for (setpoint, formula) in setpoints.iter_mut().zip(&working.follows) {
+                *setpoint = formula.value(&see);
+            }
+            working.sampled.controller_mut().controller.controller.follow(&setpoints);
         }
         for working in &mut self.0 {
             let before = working.held;
@@ -211,6 +227,7 @@ impl<T: Real> Working<T> {
             sampled,
             sees: controller.outputs.clone(),
             seen: [zero; MOST],
+            follows: controller.setpoints.clone(),
             sets: controller.inputs.iter().map(|(index, _)| *index).collect(),
             held,
         }

@@ -149,3 +149,50 @@ fn the_stabilised_gimbal_is_still_in_space() {
     assert!(held.iter().all(|rate| *rate < 5e-3), "{held:?}");
     assert!(loose.iter().any(|rate| *rate > 0.05), "{loose:?}");
 }
+
+/// A cart of 2 kg with a spring of 3 N/m that is written in its one motor, beside the inputs of two controllers: one
+/// follows a formula of time, the other, of the rate, what an outer loop wants. Between samples it swings as a cosine.
+#[test]
+fn set_points_follow_formulas_and_outer_loops() {
+    let page = "format = 1\nname = \"cart\"\n[inputs]\npush = 0.25\nwanted = 0\nhold = 0\n[parameters]\nk = 3\n[[body]]\n\
+        name = \"ground\"\nfixed = true\n[[body]]\nname = \"cart\"\nmass = 2\ninertia = [1, 1, 1]\n[[joint]]\n\
+        name = \"rail\"\nkind = \"prismatic\"\naxis = [1, 0, 0]\nzero = [0, 1, 0]\nfirst = { body = \"ground\" }\n\
+        second = { body = \"cart\" }\ndisplacement = 0.5\nrate = -0.2\n[[force]]\nname = \"motor\"\nkind = \"motor\"\n\
+        joint = \"rail\"\nvalue = \"push + 2*hold - k*rail\"\n[[controller]]\nname = \"outer\"\nkind = \"pid\"\nkp = 1.5\n\
+        outputs = [\"rail\"]\ninputs = [\"wanted\"]\nperiod = 0.04\nsetpoint = \"0.3*sin(2*t) + k/30\"\n[[controller]]\n\
+        name = \"inner\"\nkind = \"pid\"\nkp = 4\noutputs = [\"rail rate\"]\ninputs = [\"hold\"]\nperiod = 0.01\n\
+        setpoint = \"wanted - 0.1*rail\"\n[[controller]]\nname = \"other\"\nkind = \"state_feedback\"\n\
+        outputs = [\"rail\", \"rail rate\"]\ninputs = [\"push\"]\ngains = [[1, 0.5]]\nperiod = 0.02\n\
+        setpoint = [0.2, \"-0.2*t\"]\n";
+    let (mut x, mut v, mut wanted, mut hold, mut push) = (0.5, -0.2, 0.0, 0.0, 0.0);
+    let (frequency, t_end) = (1.5_f64.sqrt(), 200);
+    for k in 0..t_end {
+        let t = 0.01 * f64::from(k);
+        let before = wanted;
+        if k % 4 == 0 {
+            wanted = 1.5 * (0.3 * (2.0 * t).sin() + 0.1 - x);
+        }
+        hold = 4.0 * (before - 0.1 * x - v);
+        if k % 2 == 0 {
+            push = (0.2 - x) + 0.5 * (-0.2 * t - v);
+        }
+        let rest = (push + 2.0 * hold) / 3.0;
+        let (sine, cosine) = (frequency * 0.01).sin_cos();
+        (x, v) =
+            (rest + (x - rest) * cosine + v / frequency * sine, v * cosine - (x - rest) * frequency * sine);
+    }
+    let folder = Folder::new("setpoints");
+    fs::write(folder.0.join("cart.toml"), page).unwrap();
+    let ways: [&[&str]; 3] = [&[], &["--coordinates", "maximal"], &["--engine", "assembled"]];
+    for options in ways {
+        let scene = ["cart.toml", "--t-end", "2", "--integrator", "dop853", "--tolerance", "1e-12"];
+        let run = json(&folder, &[&scene, options].concat());
+        for (key, expected) in [("position", x), ("rate", v)] {
+            let found = run["joints"]["rail"][key].as_f64().unwrap();
+            assert!((found - expected).abs() < 1e-10, "{options:?}: {key} {found} for {expected}");
+        }
+    }
+    let linear = json(&folder, &["cart.toml", "--linearize", "0"]);
+    let words = linear["linearization"]["closed_loop"]["none"].to_string();
+    assert!(words.contains("a set point of `inner` depends on the motion"), "{linear}");
+}

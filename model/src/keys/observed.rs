@@ -63,6 +63,7 @@ pub static OUTPUT: Table = Table::new(
     kind("power", "power of all non-conservative forces, and of drivers and driven bodies (W)", &[]),
 ]);
 
+const FOLLOWED: Value = Value::Either(&[Value::Strength(""), Value::List(16, "")]);
 const EACH: Value = Value::Either(&[Value::Number(""), Value::List(16, "")]);
 const STEP: &str = "the size of a step of the converter, or 0 for none";
 
@@ -89,7 +90,13 @@ pub static CONTROLLER: Table = Table::new(
             .or("required"),
         plain("period", "s", "the same, in place of `frequency_hz`").positive(""),
         plain("delay", "s", "from a sample to its effect; not more than a period").or("0"),
-        Key::new("setpoint", EACH, "what the outputs are to be: a number for all or an array").or("0"),
+        Key::new(
+            "setpoint",
+            FOLLOWED,
+            "what the outputs are to be: a number or a formula for all, or an array; formulas are computed at each \
+             sample, and may name whatever is seen and inputs",
+        )
+        .or("0"),
         Key::new("limits", Value::Numbers(2, ""), "`[least, largest]` of each input").or("none"),
         Key::new("output_step", EACH, "the step to which outputs are rounded: a number for all or an array")
             .not_negative(STEP)

@@ -18,6 +18,8 @@ pub(super) fn strength(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> O
     let is_energy = item.key.name == "energy";
     let refuse = |name: &str, seen: Seen| match (item.key.name, seen) {
         ("energy", Seen::Coordinate(_)) | ("power", Seen::Coordinate(_) | Seen::Rate(_) | Seen::Time) => None,
+        // What is sampled is known by then.
+        ("setpoint", _) => None,
         ("energy", _) => Some(beside_coordinates(name)),
         ("power", _) => Some(beside_rates(name)),
         (key, _) => {

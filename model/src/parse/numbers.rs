@@ -87,7 +87,9 @@ impl Section<'_> {
 /// A number: a decimal, or a string that names a parameter or, of a strength, an input, or has an expression in it.
 pub(super) fn number(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Number> {
     let allowed = match item.key.value {
-        Value::Strength(_) | Value::Strengths(_) => Names::ParametersAndInputs,
+        Value::Strength(_) | Value::Strengths(_) | Value::Either([Value::Strength(_), ..]) => {
+            Names::ParametersAndInputs
+        }
         _ => Names::Parameters,
     };
     match (item.value.get_ref(), item.key.value) {
