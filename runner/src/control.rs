@@ -1,7 +1,6 @@
 //! Sampled controllers in a run: what they see is read from the motion, what they set is set in the mechanism.
 
-use crate::formula::Formula;
-use crate::line::Line;
+use crate::formula::{Formula, Seen};
 use gyro_sim::Real;
 use gyro_sim::sampled::{
     Controller as Law, Limited, Period, Pid, Quantised, Sampled, StateFeedback, TransferFunction,
@@ -47,25 +46,6 @@ impl Default for Wiring {
     fn default() -> Self {
         Self::Pid([0.0; 3])
     }
-}
-
-/// A number that controllers, events and kinks see.
-#[derive(Clone, Copy, Debug, PartialEq, SerBin, DeBin)]
-pub enum Seen {
-    /// Index among the numbers of all outputs.
-    Output(usize),
-    /// Indices of a joint and of one of its coordinates, which is no orientation.
-    Coordinate(usize, usize),
-    /// The rate of such a one.
-    Rate(usize, usize),
-    /// The time.
-    Time,
-    /// An input, its value where the run does not set it, and a factor of 1 or −1; of kinks and set points.
-    Input(usize, f64, f64),
-    /// The distance of two points; of kinks alone.
-    Distance(Line),
-    /// The rate of that; of kinks alone.
-    DistanceRate(Line),
 }
 
 const MOST: usize = 16;

@@ -1,8 +1,27 @@
 //! Formulas of what is seen of a mechanism.
 
-use crate::Seen;
+use crate::line::Line;
 use gyro_sim::{Elementary, Real};
 use nanoserde::{DeBin, SerBin};
+
+/// A number that controllers, events and kinks see.
+#[derive(Clone, Copy, Debug, PartialEq, SerBin, DeBin)]
+pub enum Seen {
+    /// Index among the numbers of all outputs.
+    Output(usize),
+    /// Indices of a joint and of one of its coordinates, which is no orientation.
+    Coordinate(usize, usize),
+    /// The rate of such a one.
+    Rate(usize, usize),
+    /// The time.
+    Time,
+    /// An input, its value where the run does not set it, and a factor of 1 or −1; of kinks and set points.
+    Input(usize, f64, f64),
+    /// The distance of two points; of kinks alone.
+    Distance(Line),
+    /// The rate of that; of kinks alone.
+    DistanceRate(Line),
+}
 
 /// Arithmetic with numbers of the mechanism: operations one after another, of which the last gives the value. There is
 /// at least one.

@@ -3,8 +3,8 @@
 use super::watch::seen;
 use super::{Halt, Run, Sides};
 use crate::Input;
-use crate::control::Seen;
 use crate::formula::Operation;
+use crate::formula::Seen;
 use crate::kink::{Kink, Stay};
 use crate::motion::{Attempt, Motion};
 use crate::sample::Observer;

@@ -1,7 +1,7 @@
 //! Events within steps.
 
 use super::Run;
-use crate::control::Seen;
+use crate::formula::Seen;
 use crate::{Occurrence, Watch, What};
 use gyro_sim::events::crossings;
 use gyro_sim::{Error, JointCoordinate, Mechanism, Partition, Real, Scalar, Turns};

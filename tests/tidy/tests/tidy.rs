@@ -50,7 +50,7 @@ const STAGES: [(&str, &str); 5] = [
     ),
     (
         "runner",
-        "approach schedule offers advice batch input touch path line control formula kink watch failure pivots motion forecast \
+        "approach schedule offers advice batch input touch path line formula control kink watch failure pivots motion forecast \
          sample companion summary grade spectrum run timing protocol child linkage loops remark spinner",
     ),
     (
