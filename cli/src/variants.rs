@@ -1,7 +1,8 @@
 //! A model without one of its elements, or with more of its numbers tunable: what an element costs is the difference.
 
 use gyro_model::{
-    Formula, Joint, JointEnd, Model, Number, Operation, OutputKind, Parameter, Seen, Support, analyse,
+    Between, ForceKind, Formula, Joint, JointEnd, Model, Number, Operation, OutputKind, Parameter, Rational,
+    Seen, Support, analyse,
 };
 
 /// A model with one thing changed.
@@ -19,6 +20,7 @@ pub(crate) fn variants(model: &Model) -> Vec<Variant> {
     changes.without_elements();
     changes.without_offsets();
     changes.with_bodies_at_rest();
+    changes.with_inputs();
     changes.with_free_numbers();
     changes.variants
 }
@@ -105,6 +107,28 @@ impl Changes<'_> {
         }
     }
 
+    /// Formulas of strengths and rates become inputs: what is left is mechanics alone.
+    fn with_inputs(&mut self) {
+        if laws(&mut self.model.clone()).next().is_none() {
+            return;
+        }
+        self.add("with an input in place of each formula".to_owned(), |model| {
+            let first = model.inputs.len();
+            let mut known: Vec<String> = Vec::new();
+            for law in laws(model) {
+                let text = law.formula().map_or_else(String::new, |formula| formula.text.clone());
+                let place = known.iter().position(|other| *other == text).unwrap_or(known.len());
+                if place == known.len() {
+                    known.push(text);
+                }
+                *law = Number::Input { index: first + place, negated: false };
+            }
+            let input = |place| Parameter { name: format!("law_{place}"), value: Rational::default() };
+            model.inputs.extend((first..first + known.len()).map(input));
+            model.between.resize(model.inputs.len(), Between::default());
+        });
+    }
+
     /// Numbers become parameters: those that are not zero, so that what the model is built like stays; of the geometry
     /// all, too.
     fn with_free_numbers(&mut self) {
@@ -159,6 +183,18 @@ fn zeros() -> [Number; 3] {
 
 fn are_zero(numbers: &[Number]) -> bool {
     numbers.iter().all(Number::is_zero)
+}
+
+/// The formulas of motors, loads, links and states.
+fn laws(model: &mut Model) -> impl Iterator<Item = &mut Number> {
+    let of_forces = model.forces.iter_mut().flat_map(|force| match &mut force.kind {
+        ForceKind::Motor { value, .. } => vec![value],
+        ForceKind::Load { force, torque, .. } => force.iter_mut().chain(torque).collect(),
+        ForceKind::Link { free_length, tension, .. } => vec![free_length, tension],
+        _ => Vec::new(),
+    });
+    let of_states = model.states.iter_mut().map(|state| &mut state.rate);
+    of_forces.chain(of_states).filter(|number| number.formula().is_some())
 }
 
 /// The numbers of all joint points and frames.

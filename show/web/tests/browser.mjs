@@ -104,7 +104,7 @@ const tests = {
       }, [body, mass]);
       const size = Math.hypot(...needed);
       assert.ok(size > 0.1 && count > 1, `${name}: ${needed} of ${count}`);
-      assert.ok(Math.hypot(...sum.map((x, axis) => x - needed[axis])) < 1e-3 * mass * 9.81, `${name}: ${sum}, not ${needed}`);
+      assert.ok(Math.hypot(...sum.map((x, axis) => x - needed[axis])) < 1e-2 * mass * 9.81, `${name}: ${sum}, not ${needed}`);
       await page.close();
     }
     return open(browser, at('crane'));
