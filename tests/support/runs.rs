@@ -54,15 +54,10 @@ pub fn start_of(model: &Model) -> Start {
         angles: angles.collect(),
         states: start.states,
         turn_references: turns.map(|turn| start.joints[turn.joint].position[turn.coordinate]).collect(),
-        inputs: Vec::new(),
-        controllers: Vec::new(),
-        watches: Vec::new(),
-        contacts: Vec::new(),
-        knots: Vec::new(),
-        paths: Vec::new(),
         observed_bodies: (0..model.coordinate_bodies().len()).collect(),
         positions: start.q,
         velocities: start.v,
+        ..Start::default()
     }
 }
 

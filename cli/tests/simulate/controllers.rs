@@ -164,7 +164,7 @@ fn set_points_follow_formulas_and_outer_loops() {
         setpoint = \"wanted - 0.1*rail\"\n[[controller]]\nname = \"other\"\nkind = \"state_feedback\"\n\
         outputs = [\"rail\", \"rail rate\"]\ninputs = [\"push\"]\ngains = [[1, 0.5]]\nperiod = 0.02\n\
         setpoint = [0.2, \"-0.2*t\"]\n";
-    let (mut x, mut v, mut wanted, mut hold, mut push) = (0.5, -0.2, 0.0, 0.0, 0.0);
+    let (mut x, mut v, mut wanted, mut push) = (0.5, -0.2, 0.0, 0.0);
     let (frequency, t_end) = (1.5_f64.sqrt(), 200);
     for k in 0..t_end {
         let t = 0.01 * f64::from(k);
@@ -172,7 +172,7 @@ fn set_points_follow_formulas_and_outer_loops() {
         if k % 4 == 0 {
             wanted = 1.5 * (0.3 * (2.0 * t).sin() + 0.1 - x);
         }
-        hold = 4.0 * (before - 0.1 * x - v);
+        let hold = 4.0 * (before - 0.1 * x - v);
         if k % 2 == 0 {
             push = (0.2 - x) + 0.5 * (-0.2 * t - v);
         }
