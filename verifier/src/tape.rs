@@ -166,6 +166,18 @@ impl Formulas {
         reached
     }
 
+    /// Only what some results depend on, and where these are in it.
+    pub fn part(&self, results: impl Iterator<Item = Id> + Clone) -> (Self, Vec<Id>) {
+        let (mut places, mut program) = (vec![0; self.program.nodes.len()], Program::default());
+        let reached = self.reach(results.clone());
+        for id in (0..places.len()).filter(|&id| reached[id]) {
+            let node = self.program.nodes[id].with_operands(|operand| places[operand]);
+            places[id] = program.push(node, self.program.lines[id]);
+        }
+        let part = Self { program, constants: self.constants.clone(), tables: self.tables.clone() };
+        (part, results.map(|id| places[id]).collect())
+    }
+
     /// The values of the nodes that are needed; `None` of others, and where something divides by zero.
     pub fn evaluate<F: Field>(
         &self,
