@@ -72,6 +72,10 @@ const DRAWS_BY_ZERO: usize = 32;
 /// are computed there.
 const SEARCHED: u64 = 16 * DRAWS;
 
+/// After so many points parameters of which all roots exist are drawn anew, as others may never exist with them: of x
+/// and p x one has no root if p has none.
+const RESTART: u64 = 128;
+
 /// The way to a point at which all roots exist. Those of parameters are found one group after the other, as many as
 /// there are: parameters whose roots all exist stay as they are.
 struct Search<F: Field> {
@@ -232,8 +236,8 @@ impl<'a, const L: usize> Decider<'a, L> {
         for number in 0..searched {
             let Some((new, atoms)) = self.draw_on(statements.module, (seed, side), number) else { continue };
             let draw = match search.take() {
-                Some(search) => search.next(new),
-                None => new,
+                Some(search) if number % RESTART != 0 => search.next(new),
+                _ => new,
             };
             let read = |source| draw.read(source);
             let missed = missed_roots(&part.evaluate(&all_of_part, &self.prime, &atoms, &read), &places);
