@@ -133,15 +133,17 @@ impl<'a> Statements<'a> {
     /// Rationals of which roots are taken without a constant for it, as of what orientations of bushings make, and for
     /// which the prime was not made: the root that is a square may then be another one than a constant is.
     fn uncovered<const L: usize>(&self, prime: &Prime<L>, roots: &[(Id, Id)]) -> Vec<Rational> {
-        let constant = roots.iter().map(|&(_, radicand)| radicand);
-        let constant: Vec<Id> =
-            constant.filter(|&id| self.parameters_of(id).is_some_and(|of| of.is_empty())).collect();
-        let (part, places) = self.formulas.part(constant.into_iter());
+        let is_constant =
+            |(_, radicand): &(Id, Id)| self.parameters_of(*radicand).is_some_and(|of| of.is_empty());
+        let constant: Vec<_> = roots.iter().copied().filter(is_constant).collect();
+        let (part, places) = self.part_of_roots(&constant);
         let atoms = Drawn::new(prime, ChaCha8Rng::from_rng(&mut Seed::FIXED.numbers(0)));
         let all = vec![true; part.program.nodes.len()];
         let values = part.evaluate(&all, prime, &atoms, &|_| Modular::zero(prime));
-        let rational = places.iter().filter_map(|&id| values[id].as_ref()?.small_fraction());
-        rational.filter(|rational| rational.is_positive() && !prime.covers(rational)).collect()
+        let fraction = |id: Id| values[id].as_ref()?.small_fraction();
+        let rational =
+            places.into_iter().filter_map(|(root, radicand)| fraction(root).or_else(|| fraction(radicand)));
+        rational.map(|r| r.abs()).filter(|r| r.is_positive() && !prime.covers(r)).collect()
     }
 
     /// The first of some primes modulo which roots of constants that have roots in them exist too, such as the half
