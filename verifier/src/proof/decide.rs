@@ -216,7 +216,7 @@ impl<'a, const L: usize> Decider<'a, L> {
     }
 
     /// Decides a claim whose residuals are not all zero, or do not exist, at a point at which roots may have been
-    /// missed. `None` if they are all zero where all roots exist. Roots that were found to exist together `never` are
+    /// missed. `None` if they are all zero where all roots exist. Roots of which `never` all were found at a point are
     /// not looked for again.
     fn look_closer(
         &self,
