@@ -72,6 +72,9 @@ const DRAWS_BY_ZERO: usize = 32;
 /// are computed there.
 const SEARCHED: u64 = 16 * DRAWS;
 
+/// So many for all claims together, but for a few for each.
+const SEARCHED_IN_ALL: u64 = 2 * SEARCHED;
+
 /// After so many points parameters of which all roots exist are drawn anew, as others may never exist with them: of x
 /// and p x one has no root if p has none.
 const RESTART: u64 = 128;
@@ -84,6 +87,24 @@ struct Search<F: Field> {
     stale: HashSet<usize>,
     /// Whether all but the parameters is to be drawn anew too.
     rest_is_stale: bool,
+}
+
+/// What came of the searches for points.
+struct Searches<F: Field> {
+    /// How many more points are looked at, but for a few.
+    left: u64,
+    /// Roots of which all were found at none.
+    never: Vec<HashSet<(Id, Id)>>,
+    /// Roots that exist at a point, which has a number.
+    found: Vec<(HashSet<(Id, Id)>, Side, Draw<F>, u64)>,
+}
+
+impl<F: Field> Searches<F> {
+    /// A point at which these exist.
+    fn point(&self, roots: &HashSet<(Id, Id)>, on: Side) -> Option<(Draw<F>, u64)> {
+        let mut found = self.found.iter().filter(|(_, side, ..)| *side == on);
+        found.find(|(all, ..)| roots.is_subset(all)).map(|(.., draw, number)| (draw.clone(), *number))
+    }
 }
 
 impl<F: Field> Search<F> {
@@ -165,7 +186,7 @@ impl<'a, const L: usize> Decider<'a, L> {
         let has_sides = statements.has_roots_of_parameters(&reach);
         let sides = [Some(Side::Drawn), has_sides.then_some(Side::Opposite)];
         let sides: Vec<_> = sides.into_iter().flatten().map(|side| (side, values(side))).collect();
-        let mut never = Vec::new();
+        let mut searches = Searches { left: SEARCHED_IN_ALL, never: Vec::new(), found: Vec::new() };
         for (refutation, residuals) in refutations.iter_mut().zip(open) {
             let Some(residuals) = residuals else { continue };
             *refutation = sides.iter().find_map(|(side, values)| {
@@ -176,7 +197,7 @@ impl<'a, const L: usize> Decider<'a, L> {
                         self.look_behind(statements, residuals, values, seed)
                     }
                     (Some(Outcome::Zero), ..) => None,
-                    _ => self.look_closer(statements, residuals, (seed, *side), &mut never),
+                    _ => self.look_closer(statements, residuals, (seed, *side), &mut searches),
                 }
             });
         }
@@ -216,14 +237,13 @@ impl<'a, const L: usize> Decider<'a, L> {
     }
 
     /// Decides a claim whose residuals are not all zero, or do not exist, at a point at which roots may have been
-    /// missed. `None` if they are all zero where all roots exist. Roots of which `never` all were found at a point are
-    /// not looked for again.
-    fn look_closer(
-        &self,
+    /// missed. `None` if they are all zero where all roots exist.
+    fn look_closer<'p>(
+        &'p self,
         statements: &Statements<'_>,
         residuals: &[Id],
         (seed, side): (Seed, Side),
-        never: &mut Vec<HashSet<(Id, Id)>>,
+        searches: &mut Searches<Modular<'p, L>>,
     ) -> Option<Verdict> {
         let reach = statements.formulas.reach(residuals.iter().copied());
         let roots = statements.roots(&reach);
@@ -232,12 +252,21 @@ impl<'a, const L: usize> Decider<'a, L> {
         let groups: Vec<_> = roots.iter().map(|&(_, radicand)| statements.parameters_of(radicand)).collect();
         let (mut zeros, mut search) = (Vec::new(), None::<Search<_>>);
         let all: HashSet<(Id, Id)> = roots.iter().copied().collect();
-        let searched = if never.iter().any(|some| some.is_subset(&all)) { 0 } else { SEARCHED };
+        let mut known = searches.point(&all, side);
+        let is_hopeless = searches.never.iter().any(|some| some.is_subset(&all));
+        let searched = if is_hopeless { 0 } else { SEARCHED.min(searches.left.max(RESTART)) };
         for number in 0..searched {
-            let Some((new, atoms)) = self.draw_on(statements.module, (seed, side), number) else { continue };
-            let draw = match search.take() {
-                Some(search) if number % RESTART != 0 => search.next(new),
-                _ => new,
+            let (draw, atoms) = if let Some((draw, number)) = known.take() {
+                (draw, self.draw(statements.module, seed, number)?.1)
+            } else {
+                searches.left = searches.left.saturating_sub(1);
+                let Some((new, atoms)) = self.draw_on(statements.module, (seed, side), number) else {
+                    continue;
+                };
+                match search.take().filter(|_| number % RESTART != 0) {
+                    Some(search) => (search.next(new), atoms),
+                    None => (new, atoms),
+                }
             };
             let read = |source| draw.read(source);
             let missed = missed_roots(&part.evaluate(&all_of_part, &self.prime, &atoms, &read), &places);
@@ -246,6 +275,7 @@ impl<'a, const L: usize> Decider<'a, L> {
                 continue;
             }
             let values = statements.formulas.evaluate(&reach, &self.prime, &atoms, &read);
+            searches.found.push((all.clone(), side, draw, number));
             match statements.outcome(residuals, &values, Field::is_zero) {
                 Outcome::Zero => return None,
                 Outcome::NotZero { residual } => return Some(Verdict::Refuted { residual }),
@@ -256,7 +286,9 @@ impl<'a, const L: usize> Decider<'a, L> {
                 return Some(line.map_or(Verdict::Undecided, |line| Verdict::Divides { line }));
             }
         }
-        never.push(all);
+        if searched == SEARCHED {
+            searches.never.push(all);
+        }
         Some(self.refute_in_floats(statements, residuals, &reach, seed))
     }
 
