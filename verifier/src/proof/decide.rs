@@ -55,9 +55,9 @@ pub struct Decider<'a, const L: usize> {
     prime: Prime<L>,
 }
 
-/// The parameters as they are drawn, or the negatives of all. As −1 is not a square, the root of a parameter's square is
-/// the parameter on one side and its negative on the other, as it is for positive and negative ones: what holds of one
-/// alone is refuted.
+/// The parameters as they are drawn, or the negatives of all. As −1 is not a square, the root of a parameter's square
+/// is the parameter on one side and its negative on the other, as it is for positive and negative ones: what holds of
+/// one alone is refuted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Drawn,
@@ -95,9 +95,11 @@ struct Searches<F: Field> {
     left: u64,
     /// Roots of which all were found at none.
     never: Vec<HashSet<(Id, Id)>>,
-    /// Roots that exist at a point, which has a number.
-    found: Vec<(HashSet<(Id, Id)>, Side, Draw<F>, u64)>,
+    found: Vec<Found<F>>,
 }
+
+/// Roots that exist at a point, which has a number.
+type Found<F> = (HashSet<(Id, Id)>, Side, Draw<F>, u64);
 
 impl<F: Field> Searches<F> {
     /// A point at which these exist.
