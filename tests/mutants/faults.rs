@@ -336,6 +336,7 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/maps.rs", "pair", "let r = «graph.sub_vec(&point, &own_arm)»;", "graph.add_vec(&point, &own_arm)"),
     fault("joint_space/maps.rs", "pair", "let on_body = «graph.sub_vec(&slid.on_body, &turned)»;", "graph.add_vec(&slid.on_body, &turned)"),
     fault("joint_space/maps.rs", "pair", "let inverse = «graph.recip(norm)»;", "norm"),
+    fault("joint_space/zero_orientation.rs", "turned", "if «is_clear(&alone)» { alone }", "true"),
     fault("joint_space/maps.rs", "pair", "let (difference, sum) = («graph.sub(cosine, sine)», graph.add(cosine, sine));", "graph.sub(sine, cosine)"),
     // The last passes.
     fault("simplify/scales.rs", "pair", "let product = self.graph.mul(x, y);\n                self.with_factor(&«c.mul(&d)», product)", "c.clone()"),

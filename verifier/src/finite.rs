@@ -15,6 +15,7 @@ use crate::states::{self, Place, places};
 use crate::tape::{Formulas, Tape, Term, Written};
 use crate::textbook::{Sparse, Textbook};
 use gyro_model::{Model, Row, RowOwner, RowUnit};
+use gyro_program::{Kernel, State};
 
 /// Axes of a joint that is whole are off by less, as the dot-1 rows have it: by more than any that are torn by
 /// [`TORN`]. A loop that is closed is off by less of the mechanism's size.
@@ -91,8 +92,9 @@ fn not_finite(
     let reads = |is: fn(Source) -> bool| {
         program.nodes.iter().any(|node| matches!(node, Node::Read(source) if is(*source)))
     };
-    // The buffer of `to_joints` may hold anything.
-    let needs_joints = reads(|source| matches!(source, Source::Joint(_))) && function != "to_joints";
+    // Whether or not it reads any: where all is driven there are none.
+    let of_joints = |kernel: Kernel| kernel.signature().state == State::Joint;
+    let needs_joints = Kernel::named(function).is_some_and(of_joints);
     if place.joints.is_none() && (is_on_constraints(function) || needs_joints) {
         return None;
     }

@@ -166,6 +166,24 @@ impl Formulas {
         reached
     }
 
+    /// Only what some results depend on, and where these are in it.
+    pub fn part(&self, results: impl Iterator<Item = Id> + Clone) -> (Self, Vec<Id>) {
+        let mut places = vec![0; self.program.nodes.len()];
+        let mut part = Self { tables: self.tables.clone(), ..Self::default() };
+        let reached = self.reach(results.clone());
+        for id in (0..places.len()).filter(|&id| reached[id]) {
+            let node = match self.program.nodes[id] {
+                Node::Constant(place) => {
+                    part.constants.push(self.constants[place].clone());
+                    Node::Constant(part.constants.len() - 1)
+                }
+                node => node.with_operands(|operand| places[operand]),
+            };
+            places[id] = part.program.push(node, self.program.lines[id]);
+        }
+        (part, results.map(|id| places[id]).collect())
+    }
+
     /// The values of the nodes that are needed; `None` of others, and where something divides by zero.
     pub fn evaluate<F: Field>(
         &self,

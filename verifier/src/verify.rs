@@ -161,14 +161,22 @@ fn modulo<const L: usize>(
     if !is_long_enough(64 * L as u64) {
         return None;
     }
-    let prime = statements.prime::<L>(report.seed).ok()?;
-    if !is_long_enough(prime.value().bits() - 1) {
-        return None;
-    }
-    let decider = Decider::<L>::new(model, prime);
-    Some(Tested {
+    let decider = |open: &[usize]| {
+        let prime = statements.prime::<L>(report.seed, open).ok()?;
+        is_long_enough(prime.value().bits() - 1).then(|| Decider::<L>::new(model, prime))
+    };
+    let tests = |decider: Decider<L>| Tested {
         verdicts: decider.decide_all(statements, report.points, report.seed),
         sparsity: decider.sparsity(module, report.seed),
         prime: decider.prime().value().clone(),
-    })
+    };
+    let tested = tests(decider(&[])?);
+    let open: Vec<usize> =
+        (0..tested.verdicts.len()).filter(|&k| tested.verdicts[k] == Verdict::Undecided).collect();
+    if open.is_empty() {
+        return Some(tested);
+    }
+    // Modulo another prime roots may exist together that modulo this one never do.
+    let again = decider(&open).map(tests).filter(|again| !again.verdicts.contains(&Verdict::Undecided));
+    again.or(Some(tested))
 }

@@ -1,5 +1,6 @@
 //! Which of the two that stand for an orientation tables show: the one that is continuous from the start.
 
+use crate::laws::{RUNS, integrated_one, run};
 use crate::support::{Folder, simulate};
 use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -168,4 +169,25 @@ fn poses_are_continuous_over_many_turns() {
     }
     println!("{turned} bodies were seen turned round");
     assert!(turned > 2 * n_models, "{turned}");
+}
+
+/// A pendulum of an axis that a negative parameter turns around: the rod's frame is then half a turn about x from the
+/// wall's where the angle is zero, and the rod falls towards greater angles.
+#[test]
+fn a_parameter_of_either_sign_turns_an_axis_around() {
+    let page = "format = 1\nname = \"turned\"\ngravity = [0, -9.81, 0]\n[parameters]\np = 2\n[[body]]\nname = \"wall\"\n\
+        fixed = true\n[[body]]\nname = \"rod\"\nmass = 1\ninertia = [1e-4, 0.08, 0.08]\n[[joint]]\nname = \"turn\"\n\
+        kind = \"revolute\"\nfirst = { body = \"wall\", axis = [0, 0, \"p\"], zero = [1, 0, 0] }\n\
+        second = { body = \"rod\", point = [-0.5, 0, 0], axis = [0, 0, 1], zero = [1, 0, 0] }\n";
+    for sign in [1.0, -1.0] {
+        let [x, v] = integrated_one([0.0, 0.0], 0.3, |x, _, _| -sign * 9.81 * 0.5 * x.cos() / 0.33);
+        for options in RUNS {
+            let set = format!("p={sign}");
+            let found = run(page, &[options, &["--set", &set]].concat(), "0.3");
+            for (key, expected) in [("position", x), ("rate", v)] {
+                let found = found["joints"]["turn"][key].as_f64().unwrap();
+                assert!((found - expected).abs() < 1e-9, "{sign} {options:?}: {found} for {expected}");
+            }
+        }
+    }
 }

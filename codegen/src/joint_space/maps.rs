@@ -3,8 +3,9 @@
 use super::closure::held_at_zero;
 use super::dynamics;
 use super::layout::{Layout, LinkCoordinates, Place, Scalar};
-use super::link_kinematics::{LinkKinematics, at_zero};
+use super::link_kinematics::LinkKinematics;
 use super::whole_angles::{Sum, WholeAngles};
+use super::zero_orientation::orientation_at_zero;
 use crate::derive::frames::{JointFrames, sine_and_cosine};
 use crate::derive::joint_coordinate::{self, relative_spin};
 use crate::derive::readings::{raw_angle, relative_euler};
@@ -188,40 +189,6 @@ fn doubled(graph: &mut Graph, (sine, cosine): (ExprId, ExprId), square: ExprId) 
     let (difference, sum) = (graph.sub(cosine, sine), graph.add(cosine, sine));
     let product = graph.mul(difference, sum);
     (graph.mul(twice, cosine), graph.div(product, square))
-}
-
-/// Euler parameters, up to a factor, of the second body in the first's frame where all angles are zero: of the four
-/// ways to read them off a rotation matrix the one farthest from a division by zero.
-fn orientation_at_zero(system: &mut System, joint: &JointFrames) -> Vec4 {
-    let r = at_zero(&mut system.graph, joint);
-    let graph = &mut system.graph;
-    let d = [r[0][0], r[1][1], r[2][2]];
-    let mut sum = |signs: [i64; 3]| {
-        let mut sum = Graph::ONE;
-        for (sign, &entry) in signs.iter().zip(&d) {
-            sum = if *sign > 0 { graph.add(sum, entry) } else { graph.sub(sum, entry) };
-        }
-        sum
-    };
-    let squares = [sum([1, 1, 1]), sum([1, -1, -1]), sum([-1, 1, -1]), sum([-1, -1, 1])];
-    let skew = [(2, 1), (0, 2), (1, 0)].map(|(i, j)| graph.sub(r[i][j], r[j][i]));
-    let even = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| graph.add(r[i][j], r[j][i]));
-    let rows = [
-        [squares[0], skew[0], skew[1], skew[2]],
-        [skew[0], squares[1], even[2], even[1]],
-        [skew[1], even[2], squares[2], even[0]],
-        [skew[2], even[1], even[0], squares[3]],
-    ];
-    let parameters = &system.model.parameters;
-    let values = evaluate(&system.graph, &squares, |symbol| match symbol {
-        Symbol::Parameter(index) => gyro_model::to_f64(&parameters[index].value),
-        _ => f64::NAN,
-    });
-    let largest = (0..4).max_by(|&a, &b| values[a].total_cmp(&values[b])).expect("four of them");
-    // The nicest multiple: the largest component one.
-    let graph = &mut system.graph;
-    let inverse = graph.recip(squares[largest]);
-    graph.scale_vec(inverse, &rows[largest])
 }
 
 /// Joint coordinates and rates in terms of a maximal state that satisfies the constraints. Of an angle on which nothing

@@ -52,6 +52,7 @@ mod relation;
 mod screw_moves;
 mod slopes;
 mod whole_angles;
+mod zero_orientation;
 
 pub use candidates::Candidates;
 pub use choose::JointSpace;

@@ -55,6 +55,15 @@ pub struct Decider<'a, const L: usize> {
     prime: Prime<L>,
 }
 
+/// The parameters as they are drawn, or the negatives of all. As −1 is not a square, the root of a parameter's square
+/// is the parameter on one side and its negative on the other, as it is for positive and negative ones: what holds of
+/// one alone is refuted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Drawn,
+    Opposite,
+}
+
 /// Draws at most this often where something divides by zero: at a random point only what is zero everywhere is zero,
 /// but for the sum of a number and of the root of its square, which is zero at every other point.
 const DRAWS_BY_ZERO: usize = 32;
@@ -62,6 +71,13 @@ const DRAWS_BY_ZERO: usize = 32;
 /// Looks at so many points for one at which all roots of a claim exist, which is every 2ⁿ-th of n roots: only the roots
 /// are computed there.
 const SEARCHED: u64 = 16 * DRAWS;
+
+/// So many for all claims together, but for a few for each.
+const SEARCHED_IN_ALL: u64 = 2 * SEARCHED;
+
+/// After so many points parameters of which all roots exist are drawn anew, as others may never exist with them: of x
+/// and p x one has no root if p has none.
+const RESTART: u64 = 128;
 
 /// The way to a point at which all roots exist. Those of parameters are found one group after the other, as many as
 /// there are: parameters whose roots all exist stay as they are.
@@ -71,6 +87,26 @@ struct Search<F: Field> {
     stale: HashSet<usize>,
     /// Whether all but the parameters is to be drawn anew too.
     rest_is_stale: bool,
+}
+
+/// What came of the searches for points.
+struct Searches<F: Field> {
+    /// How many more points are looked at, but for a few.
+    left: u64,
+    /// Roots of which all were found at none.
+    never: Vec<HashSet<(Id, Id)>>,
+    found: Vec<Found<F>>,
+}
+
+/// Roots that exist at a point, which has a number.
+type Found<F> = (HashSet<(Id, Id)>, Side, Draw<F>, u64);
+
+impl<F: Field> Searches<F> {
+    /// A point at which these exist.
+    fn point(&self, roots: &HashSet<(Id, Id)>, on: Side) -> Option<(Draw<F>, u64)> {
+        let mut found = self.found.iter().filter(|(_, side, ..)| *side == on);
+        found.find(|(all, ..)| roots.is_subset(all)).map(|(.., draw, number)| (draw.clone(), *number))
+    }
 }
 
 impl<F: Field> Search<F> {
@@ -147,14 +183,25 @@ impl<'a, const L: usize> Decider<'a, L> {
         let open: Vec<Option<&Vec<Id>>> =
             statements.claims.iter().map(Option::as_ref).zip(refutations.iter()).map(is_open).collect();
         let reach = statements.formulas.reach(open.iter().flatten().copied().flatten().copied());
-        let values = (0..DRAWS).find_map(|number| self.values(statements, &reach, seed, number));
+        let values =
+            |side| (0..DRAWS).find_map(|number| self.values(statements, &reach, (seed, side), number));
+        let has_sides = statements.has_roots_of_parameters(&reach);
+        let sides = [Some(Side::Drawn), has_sides.then_some(Side::Opposite)];
+        let sides: Vec<_> = sides.into_iter().flatten().map(|side| (side, values(side))).collect();
+        let mut searches = Searches { left: SEARCHED_IN_ALL, never: Vec::new(), found: Vec::new() };
         for (refutation, residuals) in refutations.iter_mut().zip(open) {
             let Some(residuals) = residuals else { continue };
-            let outcome = values.as_ref().map(|values| statements.outcome(residuals, values, Field::is_zero));
-            *refutation = match (outcome, &values) {
-                (Some(Outcome::Zero), Some(values)) => self.look_behind(statements, residuals, values, seed),
-                _ => self.look_closer(statements, residuals, seed),
-            };
+            *refutation = sides.iter().find_map(|(side, values)| {
+                let outcome =
+                    values.as_ref().map(|values| statements.outcome(residuals, values, Field::is_zero));
+                match (outcome, values, side) {
+                    (Some(Outcome::Zero), Some(values), Side::Drawn) => {
+                        self.look_behind(statements, residuals, values, seed)
+                    }
+                    (Some(Outcome::Zero), ..) => None,
+                    _ => self.look_closer(statements, residuals, (seed, *side), &mut searches),
+                }
+            });
         }
     }
 
@@ -163,10 +210,10 @@ impl<'a, const L: usize> Decider<'a, L> {
         &self,
         statements: &Statements<'_>,
         needed: &[bool],
-        seed: Seed,
+        point: (Seed, Side),
         number: u64,
     ) -> Option<Vec<Option<Modular<'_, L>>>> {
-        let (draw, atoms) = self.draw(statements.module, seed, number)?;
+        let (draw, atoms) = self.draw_on(statements.module, point, number)?;
         Some(statements.formulas.evaluate(needed, &self.prime, &atoms, &|source| draw.read(source)))
     }
 
@@ -177,39 +224,72 @@ impl<'a, const L: usize> Decider<'a, L> {
         Some((point::modular(self.model, module, &self.prime, &mut random)?, atoms))
     }
 
+    /// A point on a side.
+    fn draw_on(
+        &self,
+        module: &Module,
+        (seed, side): (Seed, Side),
+        number: u64,
+    ) -> Option<(Draw<Modular<'_, L>>, Drawn<'_, L>)> {
+        let (mut draw, atoms) = self.draw(module, seed, number)?;
+        if side == Side::Opposite {
+            draw.point.parameters.iter_mut().for_each(|parameter| *parameter = parameter.neg());
+        }
+        Some((draw, atoms))
+    }
+
     /// Decides a claim whose residuals are not all zero, or do not exist, at a point at which roots may have been
     /// missed. `None` if they are all zero where all roots exist.
-    fn look_closer(&self, statements: &Statements<'_>, residuals: &[Id], seed: Seed) -> Option<Verdict> {
+    fn look_closer<'p>(
+        &'p self,
+        statements: &Statements<'_>,
+        residuals: &[Id],
+        (seed, side): (Seed, Side),
+        searches: &mut Searches<Modular<'p, L>>,
+    ) -> Option<Verdict> {
         let reach = statements.formulas.reach(residuals.iter().copied());
         let roots = statements.roots(&reach);
-        let roots_reach = statements.formulas.reach(roots.iter().map(|&(root, _)| root));
+        let (part, places) = statements.part_of_roots(&roots);
+        let all_of_part = vec![true; part.program.nodes.len()];
         let groups: Vec<_> = roots.iter().map(|&(_, radicand)| statements.parameters_of(radicand)).collect();
         let (mut zeros, mut search) = (Vec::new(), None::<Search<_>>);
-        for number in 0..SEARCHED {
-            let Some((new, atoms)) = self.draw(statements.module, seed, number) else { continue };
-            let draw = match search.take() {
-                Some(search) => search.next(new),
-                None => new,
+        let all: HashSet<(Id, Id)> = roots.iter().copied().collect();
+        let mut known = searches.point(&all, side);
+        let is_hopeless = searches.never.iter().any(|some| some.is_subset(&all));
+        let searched = if is_hopeless { 0 } else { SEARCHED.min(searches.left.max(RESTART)) };
+        for number in 0..searched {
+            let (draw, atoms) = if let Some((draw, number)) = known.take() {
+                (draw, self.draw(statements.module, seed, number)?.1)
+            } else {
+                searches.left = searches.left.saturating_sub(1);
+                let Some((new, atoms)) = self.draw_on(statements.module, (seed, side), number) else {
+                    continue;
+                };
+                match search.take().filter(|_| number % RESTART != 0) {
+                    Some(search) => (search.next(new), atoms),
+                    None => (new, atoms),
+                }
             };
-            let evaluate = |needed: &[bool]| {
-                statements.formulas.evaluate(needed, &self.prime, &atoms, &|source| draw.read(source))
-            };
-            let values = evaluate(&roots_reach);
-            let missed = missed_roots(&values, &roots);
+            let read = |source| draw.read(source);
+            let missed = missed_roots(&part.evaluate(&all_of_part, &self.prime, &atoms, &read), &places);
             if missed.contains(&true) {
                 search = Some(Search::after(draw, &groups, &missed));
                 continue;
             }
-            let values = evaluate(&reach);
+            let values = statements.formulas.evaluate(&reach, &self.prime, &atoms, &read);
+            searches.found.push((all.clone(), side, draw, number));
             match statements.outcome(residuals, &values, Field::is_zero) {
                 Outcome::Zero => return None,
                 Outcome::NotZero { residual } => return Some(Verdict::Refuted { residual }),
                 Outcome::DividesByZero { line } => zeros.push(line),
             }
             if zeros.len() == DRAWS_BY_ZERO {
-                let line = zeros.into_iter().min().flatten();
+                let line = zeros.into_iter().min().flatten().filter(|_| side == Side::Drawn);
                 return Some(line.map_or(Verdict::Undecided, |line| Verdict::Divides { line }));
             }
+        }
+        if searched == SEARCHED {
+            searches.never.push(all);
         }
         Some(self.refute_in_floats(statements, residuals, &reach, seed))
     }

@@ -15,9 +15,10 @@ use chacha20::ChaCha8Rng;
 use gyro_model::{Model, Rational};
 use num_bigint::BigUint;
 use num_integer::Integer;
-use num_traits::ToPrimitive;
+use num_traits::{Signed, ToPrimitive};
 use rand::{RngExt, SeedableRng};
 use std::collections::BTreeSet;
+use std::iter;
 
 /// Primes that are tried for roots of constants that have roots in them: enough for four of these, as a rule.
 const PRIMES: usize = 64;
@@ -90,9 +91,11 @@ impl<'a> Statements<'a> {
     /// A prime for which all constants have their roots: the largest known Mersenne prime that there is room for if it
     /// is one, else a random one of all the bits that there is room for.
     ///
+    /// Roots of numbers that vary should be able to exist together too, if they are among those of some `claims`.
+    ///
     /// # Errors
     /// The number of bits that the roots take, if they are too many.
-    pub fn prime<const L: usize>(&self, seed: Seed) -> Result<Prime<L>, u64> {
+    pub fn prime<const L: usize>(&self, seed: Seed, claims: &[usize]) -> Result<Prime<L>, u64> {
         let constants = self.formulas.constants.iter();
         let radicands: Vec<_> = constants.filter_map(|constant| constant.radicand.as_ref()).collect();
         let mersenne = Some(Prime::mersenne());
@@ -100,16 +103,47 @@ impl<'a> Statements<'a> {
         let product = |r: &Rational| r.numer().magnitude() * r.denom().magnitude();
         let squares =
             radicands.iter().fold(BigUint::from(1_u32), |squares, r| squares.lcm(&radical(product(r))));
-        let mut random = seed.numbers(0);
-        let mut draw = || mersenne.take().or_else(|| Prime::with_roots(&squares, &mut random));
-        let mut of_test = seed.numbers(1);
-        // Most of the test is left to the one that is taken.
+        let mut squares = squares;
+        let roots = self.settled_roots(claims);
+        let (mut random, mut of_test) = (seed.numbers(0), seed.numbers(1));
         loop {
-            let prime = self.with_nested_roots(seed, &mut draw).ok_or(squares.bits())?;
+            let draw = || mersenne.take().or_else(|| Prime::with_roots(&squares, &mut random));
+            let prime = self.with_nested_roots(seed, draw, &roots).ok_or(squares.bits())?;
+            let uncovered = self.uncovered(&prime, &roots);
+            if !uncovered.is_empty() {
+                squares = uncovered.iter().fold(squares, |squares, r| squares.lcm(&radical(product(r))));
+                continue;
+            }
+            // Most of the test is left to the one that is taken.
             if prime.is_prime(&mut of_test) {
                 return Ok(prime);
             }
         }
+    }
+
+    /// Roots of constants and parameters, and all roots of some claims.
+    fn settled_roots(&self, claims: &[usize]) -> Vec<(Id, Id)> {
+        let ids = claims.iter().filter_map(|&claim| self.claims[claim].as_ref()).flatten().copied();
+        let (all, wanted) = (vec![true; self.formulas.program.nodes.len()], self.formulas.reach(ids));
+        let is_settled =
+            |&(root, radicand): &(Id, Id)| wanted[root] || self.parameters_of(radicand).is_some();
+        self.roots(&all).into_iter().filter(is_settled).collect()
+    }
+
+    /// Rationals of which roots are taken without a constant for it, as of what orientations of bushings make, and for
+    /// which the prime was not made: the root that is a square may then be another one than a constant is.
+    fn uncovered<const L: usize>(&self, prime: &Prime<L>, roots: &[(Id, Id)]) -> Vec<Rational> {
+        let is_constant =
+            |(_, radicand): &(Id, Id)| self.parameters_of(*radicand).is_some_and(|of| of.is_empty());
+        let constant: Vec<_> = roots.iter().copied().filter(is_constant).collect();
+        let (part, places) = self.part_of_roots(&constant);
+        let atoms = Drawn::new(prime, ChaCha8Rng::from_rng(&mut Seed::FIXED.numbers(0)));
+        let all = vec![true; part.program.nodes.len()];
+        let values = part.evaluate(&all, prime, &atoms, &|_| Modular::zero(prime));
+        let fraction = |id: Id| values[id].as_ref()?.small_fraction();
+        let rational =
+            places.into_iter().filter_map(|(root, radicand)| fraction(root).or_else(|| fraction(radicand)));
+        rational.map(|r| r.abs()).filter(|r| r.is_positive() && !prime.covers(r)).collect()
     }
 
     /// The first of some primes modulo which roots of constants that have roots in them exist too, such as the half
@@ -119,13 +153,11 @@ impl<'a> Statements<'a> {
         &self,
         seed: Seed,
         mut draw: impl FnMut() -> Option<Prime<L>>,
+        roots: &[(Id, Id)],
     ) -> Option<Prime<L>> {
-        let all = vec![true; self.formulas.program.nodes.len()];
-        let is_settled = |(_, radicand): &(Id, Id)| self.parameters_of(*radicand).is_some();
-        let roots: Vec<(Id, Id)> = self.roots(&all).into_iter().filter(is_settled).collect();
         let mut prime = draw()?;
         for _ in 1..PRIMES {
-            if self.can_all_exist(&prime, seed, &roots) {
+            if self.can_all_exist(&prime, seed, roots) {
                 break;
             }
             prime = draw()?;
@@ -133,23 +165,20 @@ impl<'a> Statements<'a> {
         Some(prime)
     }
 
-    /// Whether roots of constants and parameters can exist at one point. Say 26 is not a square: then of x and 26 x one
+    /// Whether some roots can exist at one point. Say 26 is not a square: then of x and 26 x one
     /// is not a square either, whatever x is.
     ///
     /// Of a product of numbers it can be told whether it is a square if it can of each: which roots are missed at
     /// points, as vectors modulo two, differ by sums of some vectors. If nothing missed is no such sum away from what
     /// was missed, some roots exclude each other.
     fn can_all_exist<const L: usize>(&self, prime: &Prime<L>, seed: Seed, roots: &[(Id, Id)]) -> bool {
-        let needed = self.formulas.reach(roots.iter().map(|&(root, _)| root));
-        let mut random = seed.numbers(0);
+        let (part, places) = self.part_of_roots(roots);
+        let (needed, mut random) = (vec![true; part.program.nodes.len()], seed.numbers(0));
         let mut missed = || {
-            let parameters: Vec<_> = self.model.parameters.iter().map(|_| prime.draw(&mut random)).collect();
+            let draw = iter::repeat_with(|| point::modular(self.model, self.module, prime, &mut random));
+            let draw = draw.flatten().next().expect("nearly every number has a reciprocal");
             let atoms = Drawn::new(prime, ChaCha8Rng::from_rng(&mut random));
-            let read = |source| match source {
-                Source::Parameter(k) => parameters[k],
-                _ => Modular::zero(prime),
-            };
-            missed_roots(&self.formulas.evaluate(&needed, prime, &atoms, &read), roots)
+            missed_roots(&part.evaluate(&needed, prime, &atoms, &|source| draw.read(source)), &places)
         };
         let first = missed();
         let is_constant =
@@ -237,6 +266,19 @@ impl<'a> Statements<'a> {
         roots.filter_map(root).collect()
     }
 
+    /// Only what roots depend on, with the roots in it.
+    pub(super) fn part_of_roots(&self, roots: &[(Id, Id)]) -> (Formulas, Vec<(Id, Id)>) {
+        let (part, places) = self.formulas.part(roots.iter().flat_map(|&(root, radicand)| [root, radicand]));
+        (part, places.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect())
+    }
+
+    /// Whether roots of parameters alone are among some nodes.
+    pub(super) fn has_roots_of_parameters(&self, reach: &[bool]) -> bool {
+        self.roots(reach)
+            .iter()
+            .any(|&(_, radicand)| self.parameters_of(radicand).is_some_and(|of| !of.is_empty()))
+    }
+
     /// The parameters that a formula depends on if it depends on nothing else.
     pub(super) fn parameters_of(&self, id: Id) -> Option<Vec<usize>> {
         let nodes = self.formulas.program.nodes.iter().zip(self.formulas.reach([id]));
@@ -281,7 +323,7 @@ const ROUNDING_LOG2: f64 = 1e-3;
 /// # Errors
 /// The number of bits that the roots take, if they are too many.
 pub fn prime<const L: usize>(model: &Model, module: &Module, seed: impl Into<Seed>) -> Result<Prime<L>, u64> {
-    Statements::new(model, module, &Claim::all(module)).prime(seed.into())
+    Statements::new(model, module, &Claim::all(module)).prime(seed.into(), &[])
 }
 
 /// The number with small primes taken once: it has the same prime factors.

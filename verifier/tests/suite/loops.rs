@@ -261,7 +261,7 @@ fn turn(composed: &mut Composed, p: &mut [Id], change: &[Id]) {
 /// The loop's module with its decider.
 fn with_decider<'l>(mechanism: &'l Loop, module: &Module) -> Decider<'l, 9> {
     let model = &mechanism.page.model;
-    let prime = Statements::new(model, module, &CLAIMS).prime(SEED.into());
+    let prime = Statements::new(model, module, &CLAIMS).prime(SEED.into(), &[]);
     Decider::new(model, prime.expect("room for all roots"))
 }
 

@@ -131,7 +131,7 @@ fn couplers_and_drivers_are_substituted() {
     for (name, mechanism) in [("gear", gear()), ("driven shaft", driven_shaft())] {
         let (module, model) = (mechanism.module(), &mechanism.page.model);
         assert!(model.has_work() && !model.turn_references().is_empty());
-        let prime = Statements::new(model, &module, &CLAIMS).prime(SEED.into());
+        let prime = Statements::new(model, &module, &CLAIMS).prime(SEED.into(), &[]);
         let decider: Decider<'_, 9> = Decider::new(model, prime.expect("room for all roots"));
         let proves = |module: &Module, claim| matches!(decider.decide(module, claim, 1, SEED), Verdict::Proved { error_log10, .. } if error_log10 < -30.0);
         for claim in CLAIMS {
