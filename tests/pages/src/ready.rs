@@ -62,7 +62,7 @@ impl Page {
         let [from, to, by] = [first, second, third]
             .map(|body| format!("{{ body = \"b{body}\", point = {} }}", list(&dice.point())));
         let keys = "stiffness = 3\ndamping = 0.2\nfree_length = \"0.4 + 0.1*sin(t)\"\n";
-        Some(if dice.once_in(2) {
+        Some(if dice.once_in(2) || [first, second].contains(&third) {
             format!("kind = \"wire\"\nfirst = {from}\nsecond = {to}\n{keys}")
         } else {
             format!("kind = \"rope\"\npoints = [{from}, {by}, {to}]\n{keys}")
