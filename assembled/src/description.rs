@@ -2,7 +2,7 @@
 
 use crate::model::lowered::Lowered;
 use crate::number::Number;
-use gyro_model::Model;
+use gyro_model::{Model, Output};
 use gyro_sim::{Coordinate, Description, JointInfo, OutputInfo, RowInfo};
 use self_cell::self_cell;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ self_cell!(
 
 self_cell!(
     struct Lists {
-        owner: Names,
+        owner: Owned,
         #[covariant]
         dependent: Borrowed,
     }
@@ -31,22 +31,17 @@ self_cell!(
     impl { Debug }
 );
 
-/// What the model says.
+/// The model, and of it what a [`Description`] has in a form of its own.
 #[derive(Debug)]
-struct Names {
-    size: f64,
-    bodies: Vec<String>,
-    joints: Vec<(String, Vec<Coordinate>)>,
-    couplers: Vec<String>,
-    drivers: Vec<String>,
+struct Owned {
+    model: Model,
+    /// Of each joint.
+    coordinates: Vec<Vec<Coordinate>>,
     rows: Vec<RowInfo>,
-    has_work: bool,
     turn_references: Vec<u16>,
-    inputs: Vec<String>,
-    outputs: Vec<(String, &'static str, &'static str)>,
 }
 
-/// The same in the form of a [`Description`].
+/// What the model says in the form of a [`Description`].
 #[derive(Debug)]
 struct Borrowed<'a> {
     bodies: Vec<&'a str>,
@@ -59,30 +54,14 @@ struct Borrowed<'a> {
 
 impl OwnedDescription {
     pub(crate) fn new<T: Number>(model: &Model, lowered: &Lowered<T>) -> Self {
-        let columns = |output: &gyro_model::Output| {
-            let columns = output.kind.columns().iter();
-            columns.map(|&(suffix, unit)| (output.name.clone(), suffix, unit)).collect::<Vec<_>>()
-        };
-        let names = Names {
-            size: model.size(),
-            bodies: lowered.scene.bodies.iter().map(|body| body.name.clone()).collect(),
-            joints: lowered
-                .scene
-                .joints
-                .iter()
-                .map(|joint| (joint.name.clone(), joint.readings.to_vec()))
-                .collect(),
-            couplers: model.couplers.iter().map(|coupler| coupler.name.clone()).collect(),
-            drivers: model.drivers.iter().map(|driver| driver.name.clone()).collect(),
+        let owned = Owned {
+            model: model.clone(),
+            coordinates: lowered.scene.joints.iter().map(|joint| joint.readings.to_vec()).collect(),
             rows: lowered.row_infos.clone(),
-            has_work: lowered.work.is_some(),
             turn_references: lowered.turn_readings.clone(),
-            inputs: lowered.scene.inputs.iter().map(|(name, _)| name.clone()).collect(),
-            outputs: model.outputs.iter().flat_map(columns).collect(),
         };
-        Self(Arc::new(Described::new(Lists::new(names, |names| Borrowed::of(names)), |lists| {
-            lists.describe()
-        })))
+        let lists = Lists::new(owned, |owned| Borrowed::of(owned));
+        Self(Arc::new(Described::new(lists, |lists| lists.describe())))
     }
 
     pub(crate) fn get(&self) -> &Description<'_> {
@@ -91,36 +70,34 @@ impl OwnedDescription {
 }
 
 impl<'a> Borrowed<'a> {
-    fn of(names: &'a Names) -> Self {
-        let list = |names: &'a [String]| names.iter().map(String::as_str).collect();
-        let joint = |(name, coordinates): &'a (String, Vec<Coordinate>)| JointInfo { name, coordinates };
+    fn of(Owned { model, coordinates, .. }: &'a Owned) -> Self {
+        let joints = model.joints.iter().zip(coordinates);
+        let outputs = model.outputs.iter().flat_map(|Output { name, kind }| {
+            kind.columns().iter().map(move |(suffix, unit)| OutputInfo { name, suffix, unit })
+        });
         Self {
-            bodies: list(&names.bodies),
-            joints: names.joints.iter().map(joint).collect(),
-            couplers: list(&names.couplers),
-            drivers: list(&names.drivers),
-            inputs: list(&names.inputs),
-            outputs: names
-                .outputs
-                .iter()
-                .map(|(name, suffix, unit)| OutputInfo { name, suffix, unit })
-                .collect(),
+            bodies: model.coordinate_bodies().iter().map(|body| &*model.bodies[*body].name).collect(),
+            joints: joints.map(|(joint, coordinates)| JointInfo { name: &joint.name, coordinates }).collect(),
+            couplers: model.couplers.iter().map(|coupler| &*coupler.name).collect(),
+            drivers: model.drivers.iter().map(|driver| &*driver.name).collect(),
+            inputs: model.inputs.iter().map(|input| &*input.name).collect(),
+            outputs: outputs.collect(),
         }
     }
 }
 
 impl Lists {
     fn describe(&self) -> Description<'_> {
-        let (names, lists) = (self.borrow_owner(), self.borrow_dependent());
+        let (owned, lists) = (self.borrow_owner(), self.borrow_dependent());
         Description {
-            size: names.size,
+            size: owned.model.size(),
             bodies: &lists.bodies,
             joints: &lists.joints,
             couplers: &lists.couplers,
             drivers: &lists.drivers,
-            rows: &names.rows,
-            has_work: names.has_work,
-            turn_references: &names.turn_references,
+            rows: &owned.rows,
+            has_work: owned.model.has_work(),
+            turn_references: &owned.turn_references,
             inputs: &lists.inputs,
             outputs: &lists.outputs,
         }

@@ -1,6 +1,6 @@
 //! Why a model cannot be assembled.
 
-use gyro_model::AssemblyError;
+use gyro_model::{AssemblyError, Model, Tree};
 use std::fmt;
 
 /// Why there is no mechanism of a model.
@@ -28,6 +28,26 @@ pub enum Unsupported {
     Driver(String),
     /// Constraint rows that depend on others.
     RedundantRows,
+}
+
+impl Unsupported {
+    /// What of a model no form along trees does.
+    ///
+    /// # Errors
+    /// The first thing of it.
+    pub(crate) fn beyond_trees(model: &Model) -> Result<(), Self> {
+        let tree = Tree::of(model);
+        let first = |name: Option<&String>, what: fn(String) -> Self| {
+            name.map_or(Ok(()), |name| Err(what(name.clone())))
+        };
+        let looped = tree.loop_joints.first().map(|&joint| &model.joints[joint]);
+        let unreached = tree.unreached.first().map(|&body| &model.bodies[body]);
+        first(looped.map(|joint| &joint.name), Self::Loop)?;
+        first(unreached.map(|body| &body.name), Self::Unconnected)?;
+        first(model.couplers.first().map(|coupler| &coupler.name), Self::Coupler)?;
+        first(model.drivers.first().map(|driver| &driver.name), Self::Driver)?;
+        if model.redundant.is_empty() { Ok(()) } else { Err(Self::RedundantRows) }
+    }
 }
 
 impl fmt::Display for BuildError {

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 pub(crate) use begin::{CheckArgs, NewArgs, SchemaArgs, Template};
 pub(crate) use export::{CArgs, ExportArgs, FmuArgs, Target, WasmArgs};
 pub(crate) use show::{Change, ShowArgs};
-pub(crate) use simulate::{Effort, Engine, EventSetting, InputSetting, Precision, SimulateArgs, table};
+pub(crate) use simulate::{Engine, EventSetting, InputSetting, Precision, SimulateArgs, table};
 pub(crate) use sweep::{MergeArgs, Shard, SweepArgs, SweepCommand, SweepEngine};
 
 /// The exit codes of every command.

@@ -66,10 +66,7 @@ pub(crate) fn program(
     runs: Option<Runs>,
 ) -> Result<PathBuf, Failure> {
     let package = Package::program(module, precision, runs);
-    if !package.is_there()? {
-        verify_quickly(page, module)?;
-    }
-    build(&package)?;
+    package.build_proved(page, module)?;
     package.program_file()
 }
 
@@ -92,10 +89,7 @@ pub(crate) fn sweeping(
     let mut package = Package::new(module, ("main.rs", main), processor(is_native));
     package.without_cargo = SINGLE_SCENARIOS;
     package.manifest += "\n[dependencies.gyro-sweep]\npath = \"../../sweep\"\n";
-    if !package.is_there()? {
-        verify_quickly(page, module)?;
-    }
-    build(&package)?;
+    package.build_proved(page, module)?;
     package.program_file()
 }
 
@@ -117,10 +111,7 @@ pub(crate) fn loadable(
     package.without_cargo = "; all else works without it";
     package.manifest =
         manifest(&package.name, ", features = [\"lanes\"]") + "\n[lib]\ncrate-type = [\"cdylib\"]\n";
-    if !package.is_there()? {
-        verify_quickly(page, module)?;
-    }
-    build(&package)?;
+    package.build_proved(page, module)?;
     package.built(&format!("{DLL_PREFIX}{}{DLL_SUFFIX}", package.name.replace('-', "_")))
 }
 
@@ -209,10 +200,13 @@ impl Package {
         Ok(runtime::folder()?.join("programs").join(&self.name))
     }
 
-    /// Whether this very module was written, and so verified, before.
-    fn is_there(&self) -> Result<bool, Failure> {
+    /// Compiles it, the module being verified unless this very one was written before.
+    fn build_proved(&self, page: &Model, module: &Module) -> Result<(), Failure> {
         let file = self.folder()?.join("src").join("mechanism.rs");
-        Ok(crate::write::holds(&file, &self.mechanism))
+        if !crate::write::holds(&file, &self.mechanism) {
+            verify_quickly(page, module)?;
+        }
+        build(self)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Names, rows and sizes of a model, built once.
 
 use gyro_codegen::JointForm;
-use gyro_model::{JointKind, Model, OutputKind, RowOwner, RowUnit};
+use gyro_model::{JointKind, Model, Output, OutputKind, RowOwner, RowUnit};
 use gyro_sim::{Coordinate, Description, JointInfo, JointLayout, JointPlace, OutputInfo, Owner, RowInfo};
 use self_cell::self_cell;
 
@@ -17,7 +17,7 @@ self_cell!(
 
 self_cell!(
     struct Lists {
-        owner: Names,
+        owner: Owned,
         #[covariant]
         dependent: Borrowed,
     }
@@ -76,23 +76,17 @@ impl OwnedLayout {
     }
 }
 
-/// What the model says.
+/// The model, and of it what a [`Description`] has in a form of its own.
 #[derive(Debug)]
-struct Names {
-    size: f64,
-    bodies: Vec<String>,
-    joints: Vec<(String, Vec<Coordinate>)>,
-    couplers: Vec<String>,
-    drivers: Vec<String>,
+struct Owned {
+    model: Model,
+    /// Of each joint.
+    coordinates: Vec<Vec<Coordinate>>,
     rows: Vec<RowInfo>,
-    has_work: bool,
     turn_references: Vec<u16>,
-    inputs: Vec<String>,
-    outputs: Vec<(String, &'static str, &'static str)>,
-    frames: Vec<String>,
 }
 
-/// The same in the form of a [`Description`].
+/// What the model says in the form of a [`Description`].
 #[derive(Debug)]
 struct Borrowed<'a> {
     bodies: Vec<&'a str>,
@@ -106,7 +100,7 @@ struct Borrowed<'a> {
 
 impl OwnedDescription {
     pub(crate) fn new(model: &Model) -> Self {
-        let lists = Lists::new(names(model), |names| Borrowed::of(names));
+        let lists = Lists::new(owned(model), |owned| Borrowed::of(owned));
         Self(Described::new(lists, |lists| lists.describe()))
     }
 
@@ -125,9 +119,8 @@ pub(crate) fn narrow(index: usize) -> u16 {
     u16::try_from(index).expect("descriptions hold up to 65536 of a kind")
 }
 
-fn names(model: &Model) -> Names {
+fn owned(model: &Model) -> Owned {
     let moving = model.coordinate_bodies();
-    let name = |body: &usize| model.bodies[*body].name.clone();
     let owner = |owner: RowOwner| match owner {
         RowOwner::Body(body) => {
             let moving_body = moving.iter().position(|&other| other == body);
@@ -138,24 +131,13 @@ fn names(model: &Model) -> Names {
         RowOwner::Driver(driver) => Owner::Driver(narrow(driver)),
     };
     let rows = model.rows().into_iter();
-    let outputs = model.outputs.iter().flat_map(|output| {
-        output.kind.columns().iter().map(|&(suffix, unit)| (output.name.clone(), suffix, unit))
-    });
-    let frames = model.outputs.iter().filter(|output| matches!(output.kind, OutputKind::Velocity(_)));
-    Names {
-        size: model.size(),
-        bodies: moving.iter().map(name).collect(),
-        joints: model.joints.iter().map(|joint| (joint.name.clone(), readings(joint.kind))).collect(),
-        couplers: model.couplers.iter().map(|coupler| coupler.name.clone()).collect(),
-        drivers: model.drivers.iter().map(|driver| driver.name.clone()).collect(),
+    Owned {
+        model: model.clone(),
+        coordinates: model.joints.iter().map(|joint| readings(joint.kind)).collect(),
         rows: rows
             .map(|row| RowInfo { owner: owner(row.owner), is_length: row.unit == RowUnit::Length })
             .collect(),
-        has_work: model.has_work(),
         turn_references: turn_references(model),
-        inputs: model.inputs.iter().map(|input| input.name.clone()).collect(),
-        outputs: outputs.collect(),
-        frames: frames.map(|output| output.name.clone()).collect(),
     }
 }
 
@@ -179,38 +161,36 @@ fn turn_references(model: &Model) -> Vec<u16> {
 }
 
 impl<'a> Borrowed<'a> {
-    fn of(names: &'a Names) -> Self {
-        let list = |names: &'a [String]| names.iter().map(String::as_str).collect();
-        let joint = |(name, coordinates): &'a (String, Vec<Coordinate>)| JointInfo { name, coordinates };
-        let output = |(name, suffix, unit): &'a (String, &'static str, &'static str)| OutputInfo {
-            name,
-            suffix,
-            unit,
-        };
+    fn of(Owned { model, coordinates, .. }: &'a Owned) -> Self {
+        let joints = model.joints.iter().zip(coordinates);
+        let outputs = model.outputs.iter().flat_map(|Output { name, kind }| {
+            kind.columns().iter().map(move |(suffix, unit)| OutputInfo { name, suffix, unit })
+        });
+        let frames = model.outputs.iter().filter(|output| matches!(output.kind, OutputKind::Velocity(_)));
         Self {
-            bodies: list(&names.bodies),
-            joints: names.joints.iter().map(joint).collect(),
-            couplers: list(&names.couplers),
-            drivers: list(&names.drivers),
-            inputs: list(&names.inputs),
-            outputs: names.outputs.iter().map(output).collect(),
-            frames: list(&names.frames),
+            bodies: model.coordinate_bodies().iter().map(|body| &*model.bodies[*body].name).collect(),
+            joints: joints.map(|(joint, coordinates)| JointInfo { name: &joint.name, coordinates }).collect(),
+            couplers: model.couplers.iter().map(|coupler| &*coupler.name).collect(),
+            drivers: model.drivers.iter().map(|driver| &*driver.name).collect(),
+            inputs: model.inputs.iter().map(|input| &*input.name).collect(),
+            outputs: outputs.collect(),
+            frames: frames.map(|output| &*output.name).collect(),
         }
     }
 }
 
 impl Lists {
     fn describe(&self) -> Description<'_> {
-        let (names, lists) = (self.borrow_owner(), self.borrow_dependent());
+        let (owned, lists) = (self.borrow_owner(), self.borrow_dependent());
         Description {
-            size: names.size,
+            size: owned.model.size(),
             bodies: &lists.bodies,
             joints: &lists.joints,
             couplers: &lists.couplers,
             drivers: &lists.drivers,
-            rows: &names.rows,
-            has_work: names.has_work,
-            turn_references: &names.turn_references,
+            rows: &owned.rows,
+            has_work: owned.model.has_work(),
+            turn_references: &owned.turn_references,
             inputs: &lists.inputs,
             outputs: &lists.outputs,
         }

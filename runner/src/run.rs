@@ -158,11 +158,7 @@ pub(crate) fn begin<M: Partition<Scalar: Real> + Clone>(
     approach: &Approach,
     (y, start): (&M::State, &Start),
 ) -> Result<Box<dyn Motion<M>>, Failure> {
-    let motion = match start.contacts.as_slice() {
-        [] => builder.begin(mechanism, approach, y),
-        contacts => builder.begin_touching(mechanism, approach, y, contacts),
-    };
-    let mut motion = motion.map_err(Failure::Refused)?;
+    let mut motion = builder.begin(mechanism, approach, y, &start.contacts).map_err(Failure::Refused)?;
     for input in &start.inputs {
         motion.set_input(input.index, input.at(0.0));
     }
@@ -214,7 +210,7 @@ fn foretell<M: Partition<Scalar: Real> + 'static, F: FnMut(Event<'_>) -> io::Res
     if approach.tolerance.is_some() || !forecast::is_long(steps) {
         return Ok(());
     }
-    let motion = builder.begin(mechanism, approach, y).map_err(Failure::Refused)?;
+    let motion = builder.begin(mechanism, approach, y, &[]).map_err(Failure::Refused)?;
     let Some(forecast) = forecast::forecast(mechanism, motion, (steps, settings.step)) else { return Ok(()) };
     (told.tell)(Event::Forecast(forecast))?;
     match approach.patience {

@@ -6,7 +6,7 @@
 use crate::estimate::{Deviation, deviations, estimate, expected};
 use gyro_jit::Native;
 use gyro_reference::JointRow;
-use gyro_runner::motion::{Linear, Motion, MotionBuilder, OperatingPoint};
+use gyro_runner::motion::{Begun, Linear, MotionBuilder, OperatingPoint};
 use gyro_runner::{
     Approach, Coordinates, Correction, Difference, Failure, Integrator, Offers, Sample, Settings, Start,
     Summary, differences, time_by,
@@ -127,8 +127,9 @@ impl<T: Real + 'static> MotionBuilder<Engine<T>> for LoopsNotLinearised<T> {
         mechanism: &Engine<T>,
         approach: &Approach,
         y: &Vec<T>,
-    ) -> Result<Box<dyn Motion<Engine<T>>>, String> {
-        self.0.begin(mechanism, approach, y)
+        contacts: &[Touch],
+    ) -> Begun<Engine<T>> {
+        self.0.begin(mechanism, approach, y, contacts)
     }
     fn offers(&self) -> Offers {
         self.0.offers()

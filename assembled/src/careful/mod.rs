@@ -48,19 +48,10 @@ impl<T: Number> Assembled<T, Elimination<T>> {
     /// # Errors
     /// The first thing in the model that it cannot do.
     pub fn supports(model: &Model) -> Result<(), Unsupported> {
-        let first = |name: Option<&String>, what: fn(String) -> Unsupported| {
-            name.map_or(Ok(()), |name| Err(what(name.clone())))
-        };
-        let tree = Tree::of(model);
-        let other = model.joints.iter().find(|joint| Bearing::of(joint.kind).is_none());
-        let looped = tree.loop_joints.first().map(|&joint| &model.joints[joint]);
-        let unreached = tree.unreached.first().map(|&body| &model.bodies[body]);
-        first(other.map(|joint| &joint.name), Unsupported::JointKind)?;
-        first(looped.map(|joint| &joint.name), Unsupported::Loop)?;
-        first(unreached.map(|body| &body.name), Unsupported::Unconnected)?;
-        first(model.couplers.first().map(|coupler| &coupler.name), Unsupported::Coupler)?;
-        first(model.drivers.first().map(|driver| &driver.name), Unsupported::Driver)?;
-        if model.redundant.is_empty() { Ok(()) } else { Err(Unsupported::RedundantRows) }
+        match model.joints.iter().find(|joint| Bearing::of(joint.kind).is_none()) {
+            Some(other) => Err(Unsupported::JointKind(other.name.clone())),
+            None => Unsupported::beyond_trees(model),
+        }
     }
 }
 

@@ -2,15 +2,15 @@
 
 use crate::model::between::Frames;
 use crate::model::curves::Curves;
+use crate::model::jets::{jet, power};
 use crate::model::joint::Joint;
 use crate::model::measure::Coordinate;
 use crate::model::path::Path;
 use crate::model::place::{Moment, Places, first_state, vector};
 use crate::model::scene::Scene;
 use crate::model::spot::Spot;
-use crate::number::{Number, call, if_positive, number};
+use crate::number::{Number, call, number};
 use gyro_model::{ForceKind, Formula, Model, Number as PageNumber, Operation, OutputKind, Seen};
-use gyro_program::elementary::Function;
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -207,62 +207,13 @@ impl<T: Number> Amount<T> {
     pub(crate) fn slope(&self, now: &Now<'_, T>, by: Seen) -> T {
         let Self::Formula(formula) = self else { return T::zero() };
         let Written { formula, leaves, curves } = &**formula;
-        let pair = formula.value(|operation, values: &[(T, T)]| {
-            Ok::<_, Infallible>(match operation {
-                Operation::Number(_) | Operation::Seen(_) => {
-                    let is_it = *operation == Operation::Seen(by);
-                    let value = leaves[values.len()].as_ref().map_or(T::zero(), |leaf| leaf.value(now));
-                    (value, if is_it { T::one() } else { T::zero() })
-                }
-                Operation::Negative(a) => (-values[*a].0, -values[*a].1),
-                Operation::Sum(a, b) => (values[*a].0 + values[*b].0, values[*a].1 + values[*b].1),
-                Operation::Difference(a, b) => (values[*a].0 - values[*b].0, values[*a].1 - values[*b].1),
-                Operation::Product(a, b) => {
-                    let ((a, da), (b, db)) = (values[*a], values[*b]);
-                    (a * b, da * b + a * db)
-                }
-                Operation::Quotient(a, b) => {
-                    let ((a, da), (b, db)) = (values[*a], values[*b]);
-                    (a / b, (da * b - a * db) / (b * b))
-                }
-                Operation::Power(a, exponent) => {
-                    let (a, da) = values[*a];
-                    let factor = number::<T>(f64::from(*exponent)) * power(a, exponent - 1);
-                    (power(a, *exponent), factor * da)
-                }
-                Operation::Call(function, operands) => {
-                    let (x, dx) = values[operands[0]];
-                    match curves.jet(*function, x) {
-                        Some([value, slope, _]) => (value, slope * dx),
-                        None => call_with_slope(*function, operands.map(|a| values[a])),
-                    }
-                }
-            })
-        });
-        let Ok((_, slope)) = pair;
-        slope
+        let slope = |place: usize, operation: &Operation| {
+            let value = leaves[place].as_ref().map_or(T::zero(), |leaf| leaf.value(now));
+            let slope = if *operation == Operation::Seen(by) { T::one() } else { T::zero() };
+            [value, slope, T::zero()]
+        };
+        jet(formula, curves, slope)[1]
     }
-}
-
-/// A function with its derivative, by the chain rule.
-fn call_with_slope<T: Number>(function: Function, [(x, dx), (y, dy)]: [(T, T); 2]) -> (T, T) {
-    let value = call(function, [x, y]);
-    let (zero, one) = (T::zero(), T::one());
-    let slope = match function {
-        Function::Sqrt => dx / (value + value),
-        Function::Sin => call(Function::Cos, [x, x]) * dx,
-        Function::Cos => -call(Function::Sin, [x, x]) * dx,
-        Function::Tanh => (one - value * value) * dx,
-        Function::Atan2 => (y * dx - x * dy) / (x * x + y * y),
-        Function::Exp => value * dx,
-        Function::Ln => dx / x,
-        Function::Abs => if_positive(x, dx, if_positive(-x, -dx, zero)),
-        Function::Floor => zero,
-        Function::When => if_positive(x, dy, zero),
-        Function::Unless => if_positive(x, zero, dy),
-        Function::Curve { .. } => unreachable!("curves are with formulas"),
-    };
-    (value, slope)
 }
 
 impl<T: Number> Written<T> {
@@ -284,9 +235,4 @@ impl<T: Number> Written<T> {
             },
         }
     }
-}
-
-fn power<T: Number>(base: T, exponent: i32) -> T {
-    let power = (0..exponent.unsigned_abs()).fold(T::one(), |power, _| power * base);
-    if exponent < 0 { T::one() / power } else { power }
 }

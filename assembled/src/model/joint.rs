@@ -9,7 +9,6 @@ use nalgebra::Vector3;
 /// A joint between two bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Joint<T> {
-    pub(crate) name: String,
     pub(crate) kind: JointKind,
     pub(crate) first: End<T>,
     pub(crate) second: End<T>,
@@ -83,7 +82,6 @@ impl<T: Number> Joint<T> {
         let references =
             (0..n_coordinates).map(|coordinate| reference(JointCoordinate { joint: index, coordinate }));
         Self {
-            name: joint.name.clone(),
             kind: joint.kind,
             first,
             second,

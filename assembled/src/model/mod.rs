@@ -11,6 +11,7 @@ pub(crate) mod curves;
 pub(crate) mod energy;
 pub(crate) mod forces;
 pub(crate) mod gradient;
+pub(crate) mod jets;
 pub(crate) mod joint;
 pub(crate) mod kinds;
 pub(crate) mod law;

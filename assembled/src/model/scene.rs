@@ -28,7 +28,6 @@ pub struct Scene<T: Number> {
 /// A body with coordinates.
 #[derive(Clone, Debug)]
 pub(crate) struct Body<T> {
-    pub(crate) name: String,
     pub(crate) mass: T,
     /// J', body frame.
     pub(crate) inertia: Matrix3<T>,
@@ -158,7 +157,7 @@ fn lower_body<T: Number>(model: &Model, body: usize) -> Body<T> {
     let body = &model.bodies[body];
     let [xx, yy, zz, xy, xz, yz] = model.values(&body.inertia).map(number::<T>);
     let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    Body { name: body.name.clone(), mass: number(model.value(&body.mass)), inertia }
+    Body { mass: number(model.value(&body.mass)), inertia }
 }
 
 fn constrained<T: Number>(model: &Model, body: usize, moving_body: usize) -> Constrained<T> {

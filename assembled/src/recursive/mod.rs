@@ -13,7 +13,7 @@ use crate::model::place::Moment;
 use crate::number::{Number, number};
 use crate::recursive::limbs::Limbs;
 use crate::recursive::sweeps::{Node, Space};
-use gyro_model::{Model, Tree};
+use gyro_model::Model;
 use std::cell::RefCell;
 
 /// Featherstone's articulated-body recursion (*Rigid Body Dynamics Algorithms*, chapter 7): work linear in the number
@@ -44,17 +44,7 @@ impl<T: Number> Assembled<T, Recursion<T>> {
     /// # Errors
     /// The first thing in the model that it cannot do.
     pub fn supports(model: &Model) -> Result<(), Unsupported> {
-        let tree = Tree::of(model);
-        let first = |name: Option<&String>, what: fn(String) -> Unsupported| {
-            name.map_or(Ok(()), |name| Err(what(name.clone())))
-        };
-        let looped = tree.loop_joints.first().map(|&joint| &model.joints[joint]);
-        let unreached = tree.unreached.first().map(|&body| &model.bodies[body]);
-        first(looped.map(|joint| &joint.name), Unsupported::Loop)?;
-        first(unreached.map(|body| &body.name), Unsupported::Unconnected)?;
-        first(model.couplers.first().map(|coupler| &coupler.name), Unsupported::Coupler)?;
-        first(model.drivers.first().map(|driver| &driver.name), Unsupported::Driver)?;
-        if model.redundant.is_empty() { Ok(()) } else { Err(Unsupported::RedundantRows) }
+        Unsupported::beyond_trees(model)
     }
 }
 

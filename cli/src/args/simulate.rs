@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// `simulation` of the model file, and what that does not give is chosen: joint coordinates where there are any, and
 /// error control. The summary says what was chosen. If an option is given twice, the last one counts. All times are in
 /// seconds.
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 #[command(
     args_override_self = true,
     after_help = "Examples:
@@ -130,11 +130,12 @@ pub(crate) enum Engine {
     Assembled,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Effort {
     /// Few forms of each function: generated sooner, seldom much slower
     Quick,
     /// All forms
+    #[default]
     Full,
 }
 
@@ -145,9 +146,10 @@ pub(crate) enum MethodName {
     Kept(Correction),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Precision {
     F32,
+    #[default]
     F64,
 }
 

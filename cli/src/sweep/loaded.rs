@@ -1,7 +1,7 @@
 //! A study file with its model.
 
 use super::vocabulary::vocabulary;
-use crate::args::{Effort, Precision, SimulateArgs};
+use crate::args::SimulateArgs;
 use crate::failure::Failure;
 use crate::scene::{self, Scene};
 use crate::verdict::Outcome;
@@ -109,28 +109,16 @@ fn arguments(study: &Study, model: PathBuf) -> SimulateArgs {
     let run = &study.run;
     SimulateArgs {
         model,
-        engine: None,
-        effort: Effort::Full,
         no_prove: true,
         t_end: run.t_end,
         step: run.step,
         correct_every: run.correct_every,
-        method: None,
         integrator: run.integrator,
         tolerance: run.tolerance,
         coordinates: run.coordinates,
         correction: run.correction,
-        correct_when: None,
         budget: run.budget,
-        verify: false,
-        linearize: None,
-        precision: Precision::F64,
         every: run.every,
-        set: Vec::new(),
-        input: Vec::new(),
-        event: Vec::new(),
-        strict: false,
-        out: None,
-        json: false,
+        ..SimulateArgs::default()
     }
 }

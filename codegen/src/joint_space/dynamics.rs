@@ -223,13 +223,7 @@ impl JointDynamics {
         };
         let mut elimination = Elimination::new(matrix, forces);
         elimination.rewrite(|old, divisors| reduced(graph, "mass matrix and forces", (old, divisors)));
-        for unknown in self.places.iter().rev().copied() {
-            let is_constant = graph.as_constant(elimination.diagonal(unknown)).is_some();
-            elimination.pivot(graph, unknown);
-            if is_constant {
-                elimination.rewrite(|old, divisors| normal_form_of(graph, unit, old, divisors));
-            }
-        }
+        self.eliminate(graph, unit, &mut elimination);
         let solution = elimination.substitute_back(graph);
         let found = reduced(graph, "solution", (&solution, &[]));
         self.embedding.rates_of_rates(graph, &found)
@@ -265,6 +259,12 @@ impl JointDynamics {
         let matrix = places.into_iter().zip(entries).collect();
         let mut elimination = Elimination::of_several(matrix, columns.to_vec());
         elimination.rewrite(|old, divisors| normal_form_of(graph, unit, old, divisors));
+        self.eliminate(graph, unit, &mut elimination);
+        elimination.solutions(graph)
+    }
+
+    /// Eliminates the unknowns, the last one first; what constant pivots leave is simplified.
+    fn eliminate(&self, graph: &mut Graph, unit: &[Vec<ExprId>], elimination: &mut Elimination) {
         for unknown in self.places.iter().rev().copied() {
             let is_constant = graph.as_constant(elimination.diagonal(unknown)).is_some();
             elimination.pivot(graph, unknown);
@@ -272,7 +272,6 @@ impl JointDynamics {
                 elimination.rewrite(|old, divisors| normal_form_of(graph, unit, old, divisors));
             }
         }
-        elimination.solutions(graph)
     }
 
     fn scattered(&self, rates: &[Vec<ExprId>]) -> Vec<ExprId> {

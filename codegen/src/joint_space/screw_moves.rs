@@ -47,11 +47,7 @@ impl Move {
                 turned_symmetric(graph, *axis, (*sine, *cosine), m)
             }
             Self::Shift(_) => *m,
-            _ => {
-                let rotation = self.rotation(graph);
-                let product = graph.mat_mul(&rotation, m);
-                symmetric(&graph.mat_mul(&product, &transposed(&rotation)))
-            }
+            _ => symmetric(&self.turned_matrix(graph, m)),
         }
     }
 

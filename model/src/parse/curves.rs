@@ -34,30 +34,22 @@ fn one(reader: &mut Reader<'_>, section: &Section<'_>, name: &str) -> Option<Cur
         let item = section.get("points")?;
         let points = points(reader, item)?;
         let source = name.to_owned();
-        return match Curve::through((name.to_owned(), source), &points, joined?, beyond?) {
-            Ok(curve) => Some(curve),
-            Err(reason) => {
-                let help = "write points [argument, value] with increasing arguments, of moderate size";
-                item.wrong(
-                    reader,
-                    [format!("{} has no curve through its points", section.title), reason, help.to_owned()],
-                );
-                None
-            }
+        let refused = |reason| {
+            let help = "write points [argument, value] with increasing arguments, of moderate size";
+            let message = format!("{} has no curve through its points", section.title);
+            item.wrong(reader, [message, reason, help.to_owned()]);
         };
+        return Curve::through((name.to_owned(), source), &points, joined?, beyond?).map_err(refused).ok();
     }
     let item = section.require(reader, "table")?;
     let columns = section.get("columns");
     let points = table::of_curve(reader, item, columns)?;
     let path = item.text(reader)?.to_owned();
-    match Curve::through((name.to_owned(), path.clone()), &points, joined?, beyond?) {
-        Ok(curve) => Some(curve),
-        Err(reason) => {
-            let help = "write increasing arguments, and values of moderate size";
-            item.wrong(reader, table::refusal(&path, &reason, help));
-            None
-        }
-    }
+    let refused = |reason: String| {
+        let help = "write increasing arguments, and values of moderate size";
+        item.wrong(reader, table::refusal(&path, &reason, help));
+    };
+    Curve::through((name.to_owned(), path.clone()), &points, joined?, beyond?).map_err(refused).ok()
 }
 
 /// What a word stands for; the first where there is none.

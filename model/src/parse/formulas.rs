@@ -169,7 +169,7 @@ impl Reading<'_, '_> {
                 let mut curves = self.named.curves.iter().enumerate();
                 Ok(match curves.find(|(_, curve)| curve.name == name) {
                     Some((index, curve)) => self.build.curve((index, curve), places[0]),
-                    None => functions::value(&mut self.build, name, &places),
+                    None => self.build.function(name, &places),
                 })
             }
         }

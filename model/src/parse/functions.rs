@@ -67,13 +67,9 @@ pub(super) fn check(term: &Term, name: &str, n_operands: usize, curves: &[Curve]
     Ok(())
 }
 
-/// The value of a function at operands of the right number.
-pub(super) fn value(build: &mut Build, name: &str, operands: &[usize]) -> usize {
-    build.function(name, operands)
-}
-
 impl Build {
-    fn function(&mut self, name: &str, operands: &[usize]) -> usize {
+    /// The value of a function at operands of the right number.
+    pub(super) fn function(&mut self, name: &str, operands: &[usize]) -> usize {
         match (name, operands) {
             ("tan", &[x]) => {
                 let [sin, cos] = [Function::Sin, Function::Cos].map(|function| self.call(function, [x; 2]));
@@ -99,7 +95,8 @@ impl Build {
             }
             ("cosh", &[x]) => self.cosh(x),
             ("log10", &[x]) => {
-                let (ln, scale) = (self.call(Function::Ln, [x; 2]), self.exact(ln_10()));
+                let (ln, scale) =
+                    (self.call(Function::Ln, [x; 2]), self.exact(parse_decimal(LN_10).expect("a decimal")));
                 self.quotient(ln, scale)
             }
             ("sign", &[x]) => {
@@ -172,8 +169,4 @@ impl Build {
         let risen = self.product(rise, part);
         self.sum(y0, risen)
     }
-}
-
-fn ln_10() -> Rational {
-    parse_decimal(LN_10).expect("a decimal")
 }

@@ -73,19 +73,13 @@ fn in_time(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Motion
         })
     };
     let known = seen::known(reader, &[]);
-    match laws::with_names(reader, &known, Inputs::Unknown, &refuse, |named| named.formula(text)) {
-        Ok(formula) => {
-            curves::refuse_kinks(reader, item, &formula, "a motion");
-            Some(match formula.operations.as_slice() {
-                [Operation::Number(number)] => Motion::Polynomial(vec![number.clone()]),
-                _ => Motion::Formula(formula),
-            })
-        }
-        Err(fault) => {
-            lookup::wrong_within(reader, item, text, fault);
-            None
-        }
-    }
+    let read = laws::with_names(reader, &known, Inputs::Unknown, &refuse, |named| named.formula(text));
+    let formula = read.map_err(|fault| lookup::wrong_within(reader, item, text, fault)).ok()?;
+    curves::refuse_kinks(reader, item, &formula, "a motion");
+    Some(match formula.operations.as_slice() {
+        [Operation::Number(number)] => Motion::Polynomial(vec![number.clone()]),
+        _ => Motion::Formula(formula),
+    })
 }
 
 fn form(reader: &mut Reader<'_>, item: Item<'_>) -> Option<Motion> {

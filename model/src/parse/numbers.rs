@@ -275,13 +275,7 @@ fn is_hyphenated(reader: &Reader<'_>, text: &str) -> bool {
 
 /// The number that an expression of parameters denotes.
 pub(super) fn computed(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> Option<Number> {
-    let term = match expression::parse(text) {
-        Ok(term) => term,
-        Err(at) => {
-            broken(reader, item, text, at);
-            return None;
-        }
-    };
+    let term = expression::parse(text).map_err(|at| broken(reader, item, text, at)).ok()?;
     if let Some(words) = misused_unit(item.key, text, &term) {
         item.wrong(reader, words);
         return None;
@@ -298,13 +292,7 @@ pub(super) fn computed(reader: &mut Reader<'_>, item: Item<'_>, text: &str) -> O
         values: &reader.values,
     };
     let number = meaning.number(&term);
-    match number {
-        Ok(number) => Some(number),
-        Err(fault) => {
-            wrong_within(reader, item, text, fault);
-            None
-        }
-    }
+    number.map_err(|fault| wrong_within(reader, item, text, fault)).ok()
 }
 
 /// Reports a string that is no expression: a number with a unit, or one that breaks off at a place.

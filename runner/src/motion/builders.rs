@@ -1,6 +1,6 @@
 //! What can be begun with which mechanism: the more it implements, the more there is.
 
-use super::contract::{COLUMNS, Linear, Maximal, Motion, MotionBuilder, OperatingPoint};
+use super::contract::{Begun, COLUMNS, Linear, Maximal, Motion, MotionBuilder, OperatingPoint, not_touching};
 use super::correction::{Boxed, keeping, partitioning};
 use super::independent::Closing;
 use super::lens::{Slopes, joint_duals, joints};
@@ -10,6 +10,7 @@ use crate::approach::{Approach, Coordinates, Correction as Keeping, When};
 use crate::failure::describe_in;
 use crate::offers::Offers;
 use crate::pivots;
+use crate::touch::Touch;
 use gyro_sim::{
     Baumgarte, ByDuals, CloseLoops, ClosedForm, Corrected, CorrectedDynamics, Dual, Dynamics, Exact, Joint,
     JointJacobian, JointLayout, JointSpace, Partition, Real, Rodas4, Scalar, Watched,
@@ -39,7 +40,8 @@ impl<M> MotionBuilder<M> for Any
 where
     M: Partition<Scalar: Real> + Dynamics + CorrectedDynamics + 'static,
 {
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        not_touching(contacts)?;
         only_maximal(approach)?;
         only_explicit(approach)?;
         match approach.correction {
@@ -57,7 +59,8 @@ where
 }
 
 impl<M: Maximal + 'static> MotionBuilder<M> for Projecting {
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        not_touching(contacts)?;
         only_maximal(approach)?;
         only_explicit(approach)?;
         let correction = keeping(mechanism, approach, y)?;
@@ -78,7 +81,8 @@ where
     M: Maximal + 'static,
     D: Dynamics<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
 {
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        not_touching(contacts)?;
         only_maximal(approach)?;
         let correction = keeping(mechanism, approach, y)?;
         if approach.integrator.is_implicit() {
@@ -101,7 +105,8 @@ where
     M: Maximal + JointSpace + 'static,
     D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Dynamics + Clone + 'static,
 {
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        not_touching(contacts)?;
         if approach.coordinates == Coordinates::Maximal {
             return in_maximal(mechanism, approach, &self.0, y);
         }
@@ -135,7 +140,8 @@ where
     M: Maximal + JointJacobian + 'static,
     D: Closing<Scalar = Dual<M::Scalar, COLUMNS>> + Dynamics + Clone + 'static,
 {
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        not_touching(contacts)?;
         if approach.coordinates == Coordinates::Maximal {
             return in_maximal(mechanism, approach, &self.0, y);
         }
@@ -202,12 +208,7 @@ pub(super) fn square<T>(state: &[T]) -> usize {
 }
 
 /// Maximal coordinates of mechanisms that have joint coordinates too.
-fn in_maximal<M, D>(
-    mechanism: &M,
-    approach: &Approach,
-    duals: &D,
-    y: &M::State,
-) -> Result<Box<dyn Motion<M>>, String>
+fn in_maximal<M, D>(mechanism: &M, approach: &Approach, duals: &D, y: &M::State) -> Begun<M>
 where
     M: Maximal + JointSpace + 'static,
     D: Dynamics<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,

@@ -18,6 +18,11 @@ use std::fmt::Debug;
 pub(super) const NOT_TOUCHING: &str =
     "rigid stops and friction that sticks are for generated code in joint coordinates, and explicit methods";
 
+/// Refuses contacts.
+pub(super) fn not_touching(contacts: &[Touch]) -> Result<(), String> {
+    if contacts.is_empty() { Ok(()) } else { Err(NOT_TOUCHING.to_owned()) }
+}
+
 /// A motion of a mechanism. The mechanism is handed in at each call, so that its inputs can be set in between.
 pub trait Motion<M: Mechanism> {
     /// One step of this length.
@@ -82,26 +87,17 @@ pub trait Motion<M: Mechanism> {
     fn chart_switches(&self) -> u64;
 }
 
+/// A motion that has begun, or the reason why there is none.
+pub type Begun<M> = Result<Box<dyn Motion<M>>, String>;
+
 /// What there is to begin motions of a mechanism with: more for some than for others.
 pub trait MotionBuilder<M: Partition<Scalar: Real>> {
-    /// A motion from a maximal state at time zero, or the reason why there is none.
+    /// A motion from a maximal state at time zero, or the reason why there is none. Contacts are for methods that are
+    /// explicit, in joint coordinates.
     ///
     /// # Errors
     /// What the mechanism lacks for this approach.
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String>;
-    /// A motion with contacts, by methods that are explicit, in joint coordinates.
-    ///
-    /// # Errors
-    /// What the mechanism lacks for this approach.
-    fn begin_touching(
-        &self,
-        _mechanism: &M,
-        _approach: &Approach,
-        _y: &M::State,
-        _contacts: &[Touch],
-    ) -> Result<Box<dyn Motion<M>>, String> {
-        Err(NOT_TOUCHING.to_owned())
-    }
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M>;
     /// What can be asked for; the precision and the inputs are the run's.
     fn offers(&self) -> Offers {
         Offers { joint_space: false, derivatives: false, projection: false, ..Offers::ALL }

@@ -1,6 +1,6 @@
 //! Linearisation beside runs of one kind.
 
-use super::contract::{COLUMNS, Linear, Motion, MotionBuilder, OperatingPoint};
+use super::contract::{Begun, COLUMNS, Linear, MotionBuilder, OperatingPoint};
 use super::independent::Closing;
 use super::linearise::{by_duals, by_jacobian};
 use crate::approach::Approach;
@@ -68,18 +68,8 @@ where
     B: MotionBuilder<M>,
     L: Linearise<M>,
 {
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
-        self.runs.begin(mechanism, approach, y)
-    }
-
-    fn begin_touching(
-        &self,
-        mechanism: &M,
-        approach: &Approach,
-        y: &M::State,
-        contacts: &[Touch],
-    ) -> Result<Box<dyn Motion<M>>, String> {
-        self.runs.begin_touching(mechanism, approach, y, contacts)
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        self.runs.begin(mechanism, approach, y, contacts)
     }
 
     fn offers(&self) -> Offers {

@@ -17,7 +17,7 @@ mod touching;
 
 pub use attempt::{Attempt, Look};
 pub use builders::{Any, Projecting, Tree, TreeWithJacobian, WithDuals};
-pub use contract::{COLUMNS, Element, Linear, Maximal, Motion, MotionBuilder, OperatingPoint};
+pub use contract::{Begun, COLUMNS, Element, Linear, Maximal, Motion, MotionBuilder, OperatingPoint};
 pub use course::Course;
 pub use independent::Closing;
 pub use lens::joints_near;

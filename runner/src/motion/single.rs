@@ -2,7 +2,7 @@
 //! other equations, no other correction and no dual numbers.
 
 use super::builders::{implicit, in_joints, square};
-use super::contract::{COLUMNS, Motion, MotionBuilder, NOT_TOUCHING};
+use super::contract::{Begun, COLUMNS, MotionBuilder, not_touching};
 use super::correction::{Boxed, partitioning, watched, weighted};
 use super::lens::{Slopes, joint_duals};
 use super::moving::{adaptive, explicit};
@@ -29,26 +29,21 @@ pub trait Kind<M: Partition<Scalar: Real>> {
     /// Whether it is by implicit methods.
     const IS_IMPLICIT: bool = false;
 
-    /// Whether an approach is of this kind.
-    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool;
+    /// Whether there may be contacts.
+    const TOUCHES: bool = false;
+
+    /// In which coordinates.
+    const COORDINATES: Coordinates = Coordinates::Maximal;
+
+    /// Whether runs with this correction are of this kind.
+    fn makes(&self, _correction: Keeping) -> bool {
+        true
+    }
     /// A motion from a maximal state at time zero, or the reason why there is none.
     ///
     /// # Errors
     /// What the mechanism lacks for this approach.
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String>;
-    /// As [`MotionBuilder::begin_touching`].
-    ///
-    /// # Errors
-    /// What the mechanism lacks for this approach.
-    fn begin_touching(
-        &self,
-        _mechanism: &M,
-        _approach: &Approach,
-        _y: &M::State,
-        _contacts: &[Touch],
-    ) -> Result<Box<dyn Motion<M>>, String> {
-        Err(NOT_TOUCHING.to_owned())
-    }
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M>;
     /// As [`MotionBuilder::joint_layout`].
     fn joint_layout<'a>(&self, _mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
         None
@@ -56,22 +51,16 @@ pub trait Kind<M: Partition<Scalar: Real>> {
 }
 
 impl<K: Kind<M>, M: Partition<Scalar: Real>> MotionBuilder<M> for Only<K> {
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
-        let is_implicit = approach.integrator.is_implicit();
-        if is_implicit != K::IS_IMPLICIT || !self.kind.makes(approach.coordinates, approach.correction) {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        if !K::TOUCHES {
+            not_touching(contacts)?;
+        }
+        let own = (K::IS_IMPLICIT, K::COORDINATES);
+        let asked = (approach.integrator.is_implicit(), approach.coordinates);
+        if asked != own || !self.kind.makes(approach.correction) {
             return Err(format!("this program was compiled for other runs than {approach}"));
         }
-        self.kind.begin(mechanism, approach, y)
-    }
-
-    fn begin_touching(
-        &self,
-        mechanism: &M,
-        approach: &Approach,
-        y: &M::State,
-        contacts: &[Touch],
-    ) -> Result<Box<dyn Motion<M>>, String> {
-        self.kind.begin_touching(mechanism, approach, y, contacts)
+        self.kind.begin(mechanism, approach, y, contacts)
     }
 
     /// What a program for all runs offers: advice may lead there.
@@ -93,11 +82,11 @@ impl<K: Kind<M>, M: Partition<Scalar: Real>> MotionBuilder<M> for Only<K> {
 pub struct Partitioned;
 
 impl<M: Partition<Scalar: Real> + CorrectedDynamics + 'static> Kind<M> for Partitioned {
-    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
-        coordinates == Coordinates::Maximal && correction == Keeping::Partition
+    fn makes(&self, correction: Keeping) -> bool {
+        correction == Keeping::Partition
     }
 
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, _: &[Touch]) -> Begun<M> {
         Ok(explicit(Slopes::of(Corrected), partitioning(mechanism, y), approach, y))
     }
 }
@@ -107,11 +96,11 @@ impl<M: Partition<Scalar: Real> + CorrectedDynamics + 'static> Kind<M> for Parti
 pub struct Direct;
 
 impl<M: Partition<Scalar: Real> + Dynamics + 'static> Kind<M> for Direct {
-    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
-        coordinates == Coordinates::Maximal && correction == Keeping::None
+    fn makes(&self, correction: Keeping) -> bool {
+        correction == Keeping::None
     }
 
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, _: &[Touch]) -> Begun<M> {
         Ok(explicit(Slopes::of(Exact), watched(mechanism), approach, y))
     }
 }
@@ -124,11 +113,11 @@ impl<M> Kind<M> for InClosedForm
 where
     M: Partition<Scalar: Real> + JointSpace + CorrectedDynamics + 'static,
 {
-    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
-        coordinates == Coordinates::Maximal && correction == Keeping::ClosedForm
+    fn makes(&self, correction: Keeping) -> bool {
+        correction == Keeping::ClosedForm
     }
 
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, _: &[Touch]) -> Begun<M> {
         let correction = Boxed(Box::new(ClosedForm::new(mechanism)));
         Ok(explicit(Slopes::of(Corrected), correction, approach, y))
     }
@@ -142,11 +131,11 @@ impl<M> Kind<M> for Projected
 where
     M: Partition<Scalar: Real> + Kinematics + Projection + Dynamics + 'static,
 {
-    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
-        coordinates == Coordinates::Maximal && correction == Keeping::MassWeighted
+    fn makes(&self, correction: Keeping) -> bool {
+        correction == Keeping::MassWeighted
     }
 
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, _: &[Touch]) -> Begun<M> {
         Ok(explicit(Slopes::of(Exact), weighted(mechanism), approach, y))
     }
 }
@@ -156,11 +145,11 @@ where
 pub struct Stabilised;
 
 impl<M: Partition<Scalar: Real> + Projection + Dynamics + 'static> Kind<M> for Stabilised {
-    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
-        coordinates == Coordinates::Maximal && matches!(correction, Keeping::Baumgarte(_))
+    fn makes(&self, correction: Keeping) -> bool {
+        matches!(correction, Keeping::Baumgarte(_))
     }
 
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, _: &[Touch]) -> Begun<M> {
         let Keeping::Baumgarte(rate) = approach.correction else { unreachable!("it is of this kind") };
         let slopes = Slopes::of(Baumgarte { rate: M::Scalar::constant(rate) });
         Ok(explicit(slopes, watched(mechanism), approach, y))
@@ -178,11 +167,11 @@ where
 {
     const IS_IMPLICIT: bool = true;
 
-    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
-        coordinates == Coordinates::Maximal && matches!(correction, Keeping::Partition | Keeping::None)
+    fn makes(&self, correction: Keeping) -> bool {
+        matches!(correction, Keeping::Partition | Keeping::None)
     }
 
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, _: &[Touch]) -> Begun<M> {
         let correction = match approach.correction {
             Keeping::Partition => partitioning(mechanism, y),
             _ => watched(mechanism),
@@ -196,11 +185,9 @@ where
 pub struct InJoints;
 
 impl<M: Partition<Scalar: Real> + JointSpace + 'static> Kind<M> for InJoints {
-    fn makes(&self, coordinates: Coordinates, _: Keeping) -> bool {
-        coordinates == Coordinates::Joint
-    }
+    const COORDINATES: Coordinates = Coordinates::Joint;
 
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, _: &[Touch]) -> Begun<M> {
         let (x, closing, approach) = in_joints(mechanism, approach, y)?;
         Ok(explicit(Joint, closing, &approach, &x))
     }
@@ -215,21 +202,13 @@ impl<M: Partition<Scalar: Real> + JointSpace + 'static> Kind<M> for InJoints {
 pub struct InJointsTouching;
 
 impl<M: Partition<Scalar: Real> + JointSpace + Clone + 'static> Kind<M> for InJointsTouching {
-    fn makes(&self, coordinates: Coordinates, correction: Keeping) -> bool {
-        Kind::<M>::makes(&InJoints, coordinates, correction)
-    }
+    const TOUCHES: bool = true;
+    const COORDINATES: Coordinates = Coordinates::Joint;
 
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
-        InJoints.begin(mechanism, approach, y)
-    }
-
-    fn begin_touching(
-        &self,
-        mechanism: &M,
-        approach: &Approach,
-        y: &M::State,
-        contacts: &[Touch],
-    ) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        if contacts.is_empty() {
+            return InJoints.begin(mechanism, approach, y, contacts);
+        }
         let (x, closing, approach) = in_joints(mechanism, approach, y)?;
         touching(mechanism, closing, &approach, &x, contacts)
     }
@@ -245,12 +224,9 @@ pub struct ImplicitInJoints;
 
 impl<M: Partition<Scalar: Real> + JointJacobian + 'static> Kind<M> for ImplicitInJoints {
     const IS_IMPLICIT: bool = true;
+    const COORDINATES: Coordinates = Coordinates::Joint;
 
-    fn makes(&self, coordinates: Coordinates, _: Keeping) -> bool {
-        coordinates == Coordinates::Joint
-    }
-
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, _: &[Touch]) -> Begun<M> {
         let (x, closing, approach) = in_joints(mechanism, approach, y)?;
         let method = Rodas4::new(&x, mechanism.jacobian_buffers().jacobian);
         Ok(adaptive(Joint, method, closing, &approach, &x))
@@ -271,12 +247,9 @@ where
     D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
 {
     const IS_IMPLICIT: bool = true;
+    const COORDINATES: Coordinates = Coordinates::Joint;
 
-    fn makes(&self, coordinates: Coordinates, _: Keeping) -> bool {
-        coordinates == Coordinates::Joint
-    }
-
-    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, _: &[Touch]) -> Begun<M> {
         let (x, closing, approach) = in_joints(mechanism, approach, y)?;
         let method = Rodas4::new(&x, vec![M::Scalar::constant(0.0); square(x.as_ref())]);
         Ok(adaptive(joint_duals(&self.0), method, closing, &approach, &x))

@@ -1,7 +1,7 @@
 //! A motion with rigid stops and friction that sticks, under way.
 
 use super::attempt::{Look, Shown};
-use super::contract::Motion;
+use super::contract::{Begun, Motion};
 use super::course::Course;
 use super::feed::{Around, Fed};
 use super::kink::struck;
@@ -33,7 +33,7 @@ pub(super) fn touching<M, C>(
     approach: &Approach,
     x: &M::Joints,
     touches: &[Touch],
-) -> Result<Box<dyn Motion<M>>, String>
+) -> Begun<M>
 where
     M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
     C: Correction<Joint, M> + 'static,

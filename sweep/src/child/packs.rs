@@ -31,21 +31,29 @@ where
     serve(|job| Scenarios::new(job, begin(job, one, many, check)))
 }
 
-pub(crate) fn begin<M, P, F, G, C>(job: &'static Job, one: F, many: G, check: C) -> impl Runs
-where
-    M: JointSpace<Scalar = f64>,
-    P: JointSpace<Scalar = f64x8>,
-    F: Fn(&[f64]) -> M,
-    G: Fn(&[f64x8]) -> P,
-    C: Fn(&[f64]) -> Result<(), String>,
-{
+pub(crate) fn begin<M: JointSpace<Scalar = f64>, P: JointSpace<Scalar = f64x8>>(
+    job: &'static Job,
+    one: impl Fn(&[f64]) -> M + 'static,
+    many: impl Fn(&[f64x8]) -> P + 'static,
+    check: impl Fn(&[f64]) -> Result<(), String> + 'static,
+) -> impl Runs {
     let layout = Layout::new(&one(&job.parameters), job);
     let (common, times) = (Common::new(job), job.times());
     let keepers = vec![Keeper::new(&job.keep, times.len()); LANES];
-    Packs { common, layout, times, x: Vec::new(), samples: Vec::new(), keepers, one, many, check }
+    Packs {
+        common,
+        layout,
+        times,
+        x: Vec::new(),
+        samples: Vec::new(),
+        keepers,
+        one: Box::new(one),
+        many: Box::new(many),
+        check: Box::new(check),
+    }
 }
 
-struct Packs<F, G, C> {
+struct Packs<M, P> {
     common: Common,
     layout: Layout,
     times: Vec<f64>,
@@ -55,19 +63,12 @@ struct Packs<F, G, C> {
     samples: Vec<f64x8>,
     /// For scenarios under error control, one for each lane.
     keepers: Vec<Keeper<'static>>,
-    one: F,
-    many: G,
-    check: C,
+    one: Box<dyn Fn(&[f64]) -> M>,
+    many: Box<dyn Fn(&[f64x8]) -> P>,
+    check: Box<dyn Fn(&[f64]) -> Result<(), String>>,
 }
 
-impl<M, P, F, G, C> Runs for Packs<F, G, C>
-where
-    M: JointSpace<Scalar = f64>,
-    P: JointSpace<Scalar = f64x8>,
-    F: Fn(&[f64]) -> M,
-    G: Fn(&[f64x8]) -> P,
-    C: Fn(&[f64]) -> Result<(), String>,
-{
+impl<M: JointSpace<Scalar = f64>, P: JointSpace<Scalar = f64x8>> Runs for Packs<M, P> {
     fn run(&mut self, block: &mut Block, _: Outsets<'_>) {
         let own = std::mem::take(block);
         let tell = &mut |done| {
@@ -99,14 +100,7 @@ where
     }
 }
 
-impl<M, P, F, G, C> Packs<F, G, C>
-where
-    M: JointSpace<Scalar = f64>,
-    P: JointSpace<Scalar = f64x8>,
-    F: Fn(&[f64]) -> M,
-    G: Fn(&[f64x8]) -> P,
-    C: Fn(&[f64]) -> Result<(), String>,
-{
+impl<M: JointSpace<Scalar = f64>, P: JointSpace<Scalar = f64x8>> Packs<M, P> {
     /// Steps of fixed length; lanes that no scenario fills repeat the last one.
     fn run_pack(&mut self, block: &mut Block, row: u32, count: u32) {
         let Self { common, layout, times, x, samples, one, many, check, .. } = self;

@@ -58,7 +58,7 @@ pub(crate) fn plain(job: &Job) -> &'static Job {
     Box::leak(Box::new(Job { keep, ..job.clone() }))
 }
 
-pub(crate) struct Sensitive<R, F, G> {
+pub(crate) struct Sensitive<R, M, D> {
     inner: R,
     common: Common,
     times: Vec<f64>,
@@ -67,27 +67,26 @@ pub(crate) struct Sensitive<R, F, G> {
     layout: Option<Layout>,
     /// Of each direction: equations have derivatives times this, which are of the state's size.
     scales: Vec<f64>,
-    one: F,
-    duals: G,
+    one: Box<dyn Fn(&[f64]) -> M>,
+    duals: Box<dyn Fn(&[Number]) -> D>,
 }
 
-impl<R, F, G> Sensitive<R, F, G> {
-    pub(crate) fn new(job: &'static Job, inner: R, one: F, duals: G) -> Self {
+impl<R, M, D> Sensitive<R, M, D> {
+    pub(crate) fn new(
+        job: &'static Job,
+        inner: R,
+        one: impl Fn(&[f64]) -> M + 'static,
+        duals: impl Fn(&[Number]) -> D + 'static,
+    ) -> Self {
         let scales = job.keep.by.iter().map(|target| job.plan.scale(*target)).collect();
         let (common, times) = (Common::new(job), job.times());
         let kept = Slopes::new(&job.keep, times.len());
+        let (one, duals) = (Box::new(one), Box::new(duals));
         Self { inner, common, times, kept, layout: None, scales, one, duals }
     }
 }
 
-impl<M, D, R, F, G> Runs for Sensitive<R, F, G>
-where
-    M: JointSpace<Scalar = f64>,
-    D: JointSpace<Scalar = Number>,
-    R: Runs,
-    F: Fn(&[f64]) -> M,
-    G: Fn(&[Number]) -> D,
-{
+impl<R: Runs, M: JointSpace<Scalar = f64>, D: JointSpace<Scalar = Number>> Runs for Sensitive<R, M, D> {
     fn run(&mut self, block: &mut Block, from: Outsets<'_>) {
         let keep = &self.common.job.keep;
         self.inner.run(block, from);
@@ -116,13 +115,7 @@ where
     }
 }
 
-impl<M, D, R, F, G> Sensitive<R, F, G>
-where
-    M: JointSpace<Scalar = f64>,
-    D: JointSpace<Scalar = Number>,
-    F: Fn(&[f64]) -> M,
-    G: Fn(&[Number]) -> D,
-{
+impl<R, M: JointSpace<Scalar = f64>, D: JointSpace<Scalar = Number>> Sensitive<R, M, D> {
     /// Runs one, from an assembled start and its derivatives or from the one that all have.
     fn scenario(&mut self, start: Option<(&Start, &StartSlopes)>) -> Result<(), String> {
         let job = self.common.job;

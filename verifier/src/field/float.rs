@@ -3,6 +3,33 @@
 use super::{Constant, Field};
 use gyro_model::{Rational, to_f64};
 
+/// Operations of the number type itself.
+macro_rules! operations {
+    () => {
+        fn add(&self, other: &Self) -> Self {
+            self + other
+        }
+        fn sub(&self, other: &Self) -> Self {
+            self - other
+        }
+        fn mul(&self, other: &Self) -> Self {
+            self * other
+        }
+        fn neg(&self) -> Self {
+            -self
+        }
+        fn inv(&self) -> Option<Self> {
+            Some(1.0 / self)
+        }
+        fn div(&self, other: &Self) -> Option<Self> {
+            Some(self / other)
+        }
+        fn is_zero(&self) -> bool {
+            *self == 0.0
+        }
+    };
+}
+
 impl Field for f64 {
     type Context = ();
 
@@ -15,27 +42,7 @@ impl Field for f64 {
     fn constant((): (), constant: &Constant) -> Self {
         constant.literal
     }
-    fn add(&self, other: &Self) -> Self {
-        self + other
-    }
-    fn sub(&self, other: &Self) -> Self {
-        self - other
-    }
-    fn mul(&self, other: &Self) -> Self {
-        self * other
-    }
-    fn neg(&self) -> Self {
-        -self
-    }
-    fn inv(&self) -> Option<Self> {
-        Some(1.0 / self)
-    }
-    fn div(&self, other: &Self) -> Option<Self> {
-        Some(self / other)
-    }
-    fn is_zero(&self) -> bool {
-        *self == 0.0
-    }
+    operations! {}
 }
 
 impl Field for f32 {
@@ -50,27 +57,7 @@ impl Field for f32 {
     fn constant((): (), constant: &Constant) -> Self {
         narrow(constant.literal)
     }
-    fn add(&self, other: &Self) -> Self {
-        self + other
-    }
-    fn sub(&self, other: &Self) -> Self {
-        self - other
-    }
-    fn mul(&self, other: &Self) -> Self {
-        self * other
-    }
-    fn neg(&self) -> Self {
-        -self
-    }
-    fn inv(&self) -> Option<Self> {
-        Some(1.0 / self)
-    }
-    fn div(&self, other: &Self) -> Option<Self> {
-        Some(self / other)
-    }
-    fn is_zero(&self) -> bool {
-        *self == 0.0
-    }
+    operations! {}
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is what is meant")]

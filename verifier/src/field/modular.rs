@@ -4,6 +4,7 @@ mod arithmetic;
 mod prime;
 
 pub use prime::Prime;
+use prime::known;
 
 use super::Field;
 use gyro_model::Rational;
@@ -103,19 +104,19 @@ impl<'p, const L: usize> Field for Modular<'p, L> {
             let [numerator, denominator] = [value.numer(), value.denom()].map(|n| Self::new(prime, n));
             numerator.div(&denominator).unwrap_or(Self::undefined(prime))
         };
-        Self { limbs: prime.known_rational(value, || quotient().limbs), prime }
+        Self { limbs: known(&prime.rationals, value, || quotient().limbs), prime }
     }
 
     /// Undefined where the prime was not made for this root; the prime then notes that it was missed.
     fn sqrt_rational(prime: Self::Context, value: &Rational) -> Self {
         let root = || {
             if !prime.covers(value) {
-                prime.miss(value);
+                prime.missed.borrow_mut().push(value.clone());
                 return None;
             }
             Self::from_rational(prime, value).sqrt().and_then(|root| root.limbs)
         };
-        Self { limbs: prime.known_root(value, root), prime }
+        Self { limbs: known(&prime.roots, value, root), prime }
     }
 
     fn add(&self, other: &Self) -> Self {

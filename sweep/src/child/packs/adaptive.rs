@@ -78,14 +78,7 @@ impl<'a> Open<'a> {
 type Solvers<M, P, A, B> =
     Adaptive<Joint, <P as JointSpace>::Joints, f64x8, A, Joint, <M as JointSpace>::Joints, B>;
 
-impl<M, P, F, G, C> Packs<F, G, C>
-where
-    M: JointSpace<Scalar = f64>,
-    P: JointSpace<Scalar = f64x8>,
-    F: Fn(&[f64]) -> M,
-    G: Fn(&[f64x8]) -> P,
-    C: Fn(&[f64]) -> Result<(), String>,
-{
+impl<M: JointSpace<Scalar = f64>, P: JointSpace<Scalar = f64x8>> Packs<M, P> {
     /// Runs blocks with the method that `method` makes for packs; the other is the same for one scenario.
     pub(super) fn run_lanes<A, B>(
         &mut self,

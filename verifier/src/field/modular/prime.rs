@@ -22,13 +22,13 @@ pub struct Prime<const L: usize> {
     /// Every divisor of this number is a square.
     squares: BigUint,
     root_exponent: BigUint,
-    missed: RefCell<Vec<Rational>>,
+    pub(super) missed: RefCell<Vec<Rational>>,
     /// Rationals and roots of rationals met so far: to divide takes long.
-    rationals: Known<L>,
-    roots: Known<L>,
+    pub(super) rationals: Known<L>,
+    pub(super) roots: Known<L>,
 }
 
-type Known<const L: usize> = RefCell<HashMap<Rational, Option<[u64; L]>>>;
+pub(super) type Known<const L: usize> = RefCell<HashMap<Rational, Option<[u64; L]>>>;
 
 impl<const L: usize> Prime<L> {
     /// The largest Mersenne prime of some that there is room for; two is a square modulo each.
@@ -124,26 +124,6 @@ impl<const L: usize> Prime<L> {
         Modular::new(self, &BigInt::from(BigUint::new(words)))
     }
 
-    pub(super) fn known_rational(
-        &self,
-        value: &Rational,
-        compute: impl FnOnce() -> Option<[u64; L]>,
-    ) -> Option<[u64; L]> {
-        known(&self.rationals, value, compute)
-    }
-
-    pub(super) fn known_root(
-        &self,
-        value: &Rational,
-        compute: impl FnOnce() -> Option<[u64; L]>,
-    ) -> Option<[u64; L]> {
-        known(&self.roots, value, compute)
-    }
-
-    pub(super) fn miss(&self, radicand: &Rational) {
-        self.missed.borrow_mut().push(radicand.clone());
-    }
-
     pub(super) fn limbs(&self) -> &[u64; L] {
         &self.limbs
     }
@@ -184,7 +164,8 @@ const SMALL: u32 = 2000;
 /// Rounds of Miller and Rabin's test; each lets a composite pass with probability at most 1/4.
 const ROUNDS: usize = 60;
 
-fn known<const L: usize>(
+/// What the table has of a value, or what is computed of it and noted there.
+pub(super) fn known<const L: usize>(
     table: &Known<L>,
     value: &Rational,
     compute: impl FnOnce() -> Option<[u64; L]>,
