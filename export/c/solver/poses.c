@@ -17,8 +17,16 @@ static int gyro_age(const gyro_solver *s, int age)
     return (s->newest + 10 - age % 10) % 10;
 }
 
+/* One over the time between each state and the one that so many are before it, by this number, from 1 on. */
+static void gyro_inverse_spans(const gyro_solver *s, gyro_real spans[10][10])
+{
+    for (int degree = 0; degree < s->n_past; degree++)
+        for (int k = 0; k < s->n_past - degree - 1; k++)
+            spans[degree][k] = K(1.0) / (s->past[gyro_age(s, k)].t - s->past[gyro_age(s, k + degree + 1)].t);
+}
+
 /* The terms of Newton's polynomial of one element. */
-static void gyro_terms(const gyro_solver *s, int i, gyro_real t, gyro_real terms[10])
+static void gyro_terms(const gyro_solver *s, gyro_real spans[10][10], int i, gyro_real t, gyro_real terms[10])
 {
     gyro_real differences[10], product = K(1.0);
     for (int age = 0; age < 10; age++)
@@ -26,18 +34,18 @@ static void gyro_terms(const gyro_solver *s, int i, gyro_real t, gyro_real terms
     for (int degree = 0; degree < s->n_past; degree++) {
         terms[degree] = product * differences[0];
         product = product * (t - s->past[gyro_age(s, degree)].t);
-        for (int k = 0; k < s->n_past - degree - 1; k++) {
-            const gyro_real span = s->past[gyro_age(s, k)].t - s->past[gyro_age(s, k + degree + 1)].t;
-            differences[k] = (differences[k] - differences[k + 1]) / span;
-        }
+        for (int k = 0; k < s->n_past - degree - 1; k++)
+            differences[k] = (differences[k] - differences[k + 1]) * spans[degree][k];
     }
 }
 
 static void gyro_polynomial(const gyro_solver *s, gyro_real t, int degree, gyro_real *out)
 {
+    gyro_real spans[10][10] = {{K(0.0)}};
+    gyro_inverse_spans(s, spans);
     for (int i = 0; i < GYRO_SOLVER_N; i++) {
         gyro_real terms[10], sum = K(0.0);
-        gyro_terms(s, i, t, terms);
+        gyro_terms(s, spans, i, t, terms);
         for (int k = 0; k <= degree && k < s->n_past; k++)
             sum = sum + terms[k];
         out[i] = sum;
@@ -48,10 +56,12 @@ static void gyro_polynomial(const gyro_solver *s, gyro_real t, int degree, gyro_
 static int gyro_best_fit(const gyro_solver *s, gyro_real t, gyro_real rounding, double *error)
 {
     double sums[10] = {0.0}, best = 0.0;
+    gyro_real spans[10][10] = {{K(0.0)}};
     int degree = -1;
+    gyro_inverse_spans(s, spans);
     for (int i = 0; i < GYRO_SOLVER_N; i++) {
         gyro_real terms[10];
-        gyro_terms(s, i, t, terms);
+        gyro_terms(s, spans, i, t, terms);
         for (int k = 0; k < s->n_past; k++) {
             const gyro_real left = FABS(terms[k]) - rounding;
             const double term = left > K(0.0) ? (double)(left / s->weights[i]) : 0.0;

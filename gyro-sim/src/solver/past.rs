@@ -64,14 +64,14 @@ impl<S: Storage<T>, T: Real> Past<S, T> {
     /// square over the elements in units of the weights: how far the polynomial of one degree less is off. So much of
     /// each element is rounding and does not count.
     pub(super) fn best_fit(&self, t: T, weights: &S, rounding: T) -> Option<(usize, f64)> {
-        let (mut sums, mut n) = ([0.0; NODES], 0.0);
+        let (mut sums, mut n, spans) = ([0.0; NODES], 0.0, self.inverse_spans());
         for (i, weight) in weights.as_ref().iter().enumerate() {
             let mut term = |degree: usize, term: T| {
                 let term = term.abs() - rounding;
                 let term = if term > T::constant(0.0) { (term / *weight).to_f64() } else { 0.0 };
                 sums[degree] += term * term;
             };
-            self.each_term(i, t, &mut term);
+            self.each_term((i, &spans), t, &mut term);
             n += 1.0;
         }
         let largest = |terms: &[f64]| terms.iter().copied().fold(0.0, f64::max);
@@ -82,9 +82,10 @@ impl<S: Storage<T>, T: Real> Past<S, T> {
 
     /// Writes the polynomial of this degree, through the newest states, at a time.
     pub(super) fn at(&self, t: T, degree: usize, out: &mut S) {
+        let spans = self.inverse_spans();
         for (i, out) in out.as_mut().iter_mut().enumerate() {
             let mut sum = T::constant(0.0);
-            self.each_term(i, t, &mut |k, term| {
+            self.each_term((i, &spans), t, &mut |k, term| {
                 if k <= degree {
                     sum = sum + term
                 }
@@ -93,17 +94,27 @@ impl<S: Storage<T>, T: Real> Past<S, T> {
         }
     }
 
+    /// One over the time between each node and the one that so many are before it, by this number, from 1 on.
+    fn inverse_spans(&self) -> [[T; NODES]; NODES] {
+        let mut spans = [[T::constant(0.0); NODES]; NODES];
+        for (degree, spans) in spans.iter_mut().enumerate().take(self.len) {
+            for (k, span) in spans.iter_mut().enumerate().take(self.len - degree - 1) {
+                *span = T::constant(1.0) / (self.node(k).t - self.node(k + degree + 1).t);
+            }
+        }
+        spans
+    }
+
     /// Newton's form of the polynomial through all nodes, of one element, term by term: divided differences times
     /// products of distances.
-    fn each_term(&self, i: usize, t: T, tell: &mut impl FnMut(usize, T)) {
+    fn each_term(&self, (i, spans): (usize, &[[T; NODES]; NODES]), t: T, tell: &mut impl FnMut(usize, T)) {
         let mut differences: [T; NODES] = core::array::from_fn(|age| self.node(age).y.as_ref()[i]);
         let mut product = T::constant(1.0);
-        for degree in 0..self.len {
+        for (degree, spans) in spans.iter().enumerate().take(self.len) {
             tell(degree, product * differences[0]);
             product = product * (t - self.node(degree).t);
             for k in 0..self.len - degree - 1 {
-                let span = self.node(k).t - self.node(k + degree + 1).t;
-                differences[k] = (differences[k] - differences[k + 1]) / span;
+                differences[k] = (differences[k] - differences[k + 1]) * spans[k];
             }
         }
     }
