@@ -9,7 +9,7 @@ use gyro_reference::JointRow;
 use gyro_runner::motion::{Begun, Linear, MotionBuilder, OperatingPoint};
 use gyro_runner::{
     Approach, Coordinates, Correction, Difference, Failure, Integrator, Offers, Sample, Settings, Start,
-    Summary, differences, time_by,
+    Summary, Touch, differences, time_by,
 };
 use gyro_sim::{JointLayout, Real};
 use gyro_sim_suite::{Duals, Engine, duals, generated_in, generated_with_joints, model, moved, start_of};
