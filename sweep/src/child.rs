@@ -25,6 +25,9 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 pub use whole::whole;
 
+/// Makes something, such as a mechanism, of the values of parameters.
+type Making<N, M> = Box<dyn Fn(&[N]) -> M>;
+
 /// What is to be run: all that a program needs to know of a study.
 #[derive(Clone, Debug, PartialEq, SerBin, DeBin)]
 pub struct Job {

@@ -5,7 +5,7 @@
 mod adaptive;
 
 use super::joint::Layout;
-use super::{Blocks, Common, Job, Outsets, Runs, Scenarios, Tell, Unit, note, serve};
+use super::{Blocks, Common, Job, Making, Outsets, Runs, Scenarios, Tell, Unit, note, serve};
 use crate::Keeper;
 use crate::record::Block;
 use gyro_runner::{Approach, Schedule, describe_in, scheduled};
@@ -63,9 +63,9 @@ struct Packs<M, P> {
     samples: Vec<f64x8>,
     /// For scenarios under error control, one for each lane.
     keepers: Vec<Keeper<'static>>,
-    one: Box<dyn Fn(&[f64]) -> M>,
-    many: Box<dyn Fn(&[f64x8]) -> P>,
-    check: Box<dyn Fn(&[f64]) -> Result<(), String>>,
+    one: Making<f64, M>,
+    many: Making<f64x8, P>,
+    check: Making<f64, Result<(), String>>,
 }
 
 impl<M: JointSpace<Scalar = f64>, P: JointSpace<Scalar = f64x8>> Runs for Packs<M, P> {

@@ -3,7 +3,7 @@
 use super::joint::{Layout, flat, joint_start, write_start};
 use super::variational::{Closing, Number, Part, Parts, Variational};
 use super::watch::Watch;
-use super::{Common, Job, Outsets, Runs, Scenarios, StartSlopes, note, packs, serve, whole};
+use super::{Common, Job, Making, Outsets, Runs, Scenarios, StartSlopes, note, packs, serve, whole};
 use crate::Keep;
 use crate::plan::Target;
 use crate::record::Block;
@@ -67,8 +67,8 @@ pub(crate) struct Sensitive<R, M, D> {
     layout: Option<Layout>,
     /// Of each direction: equations have derivatives times this, which are of the state's size.
     scales: Vec<f64>,
-    one: Box<dyn Fn(&[f64]) -> M>,
-    duals: Box<dyn Fn(&[Number]) -> D>,
+    one: Making<f64, M>,
+    duals: Making<Number, D>,
 }
 
 impl<R, M, D> Sensitive<R, M, D> {
