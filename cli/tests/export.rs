@@ -129,7 +129,8 @@ fn difference_in_c(model: &Path, name: &str, folder: &Path) -> (f64, usize) {
         let is_its = |title: &str| title.to_lowercase() == owner;
         let is_part =
             |title: &str| title.to_lowercase().strip_prefix(&owner).is_some_and(|rest| rest.starts_with('.'));
-        let Some(first) = titles.iter().position(|title| is_its(title) || is_part(title)) else { continue };
+        let first = titles.iter().position(|title| is_its(title) || is_part(title));
+        let first = first.unwrap_or_else(|| panic!("{name}: the table has no {owner}"));
         let (from, count) = match count {
             0 => (
                 1 + n + place,

@@ -63,6 +63,9 @@ pub enum Operation {
 impl Formula {
     /// Its value; not finite where it divides by zero or has the root of a negative number.
     pub fn value<T: Real>(&self, see: &impl Fn(Seen) -> T) -> T {
+        if let [Operation::Number(value)] = self.0[..] {
+            return T::constant(value);
+        }
         let mut values: Vec<T> = Vec::with_capacity(self.0.len());
         for operation in &self.0 {
             values.push(match operation {

@@ -132,15 +132,13 @@ fn springs(model: &Model) -> Vec<usize> {
 fn loads(model: &Model) -> Vec<gyro_show::Load> {
     let load = |force: &gyro_model::Force| match &force.kind {
         ForceKind::Load { body, point, force: along, torque, frame } => {
-            let told = |key, numbers: &[Number; 3]| {
-                std::array::from_fn(|k| laws::told(model, force, (key, k), &numbers[k]))
-            };
+            let told = |numbers: &[Number; 3]| numbers.each_ref().map(|number| laws::told(model, number));
             Some(gyro_show::Load {
                 name: force.name.clone(),
                 body: *body,
                 point: model.values(point),
-                force: told("force", along),
-                torque: told("torque", torque),
+                force: told(along),
+                torque: told(torque),
                 in_body: *frame == LoadFrame::Body,
             })
         }

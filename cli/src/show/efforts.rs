@@ -22,8 +22,7 @@ fn along(model: &Model, force: &Force) -> Option<Effort> {
         ForceKind::Stop { side: StopSide::Upper, .. } => "upper",
         _ => parts.word,
     };
-    let numbers =
-        parts.numbers.iter().map(|(key, numbers)| (*key, told(model, force, (key, 0), &numbers[0])));
+    let numbers = parts.numbers.iter().map(|(key, numbers)| (*key, told(model, &numbers[0])));
     let numbers = numbers.collect();
     parts.on.map(|(on, _)| effort(model, on, law, numbers))
 }

@@ -1,58 +1,63 @@
 //! Forces by formula, as the page has them: the run tells what they give.
 
-use gyro_model::{Force, ForceKind, Model, Number, Output, OutputKind};
+use gyro_model::{ForceKind, Formula, Model, Number, Output, OutputKind};
 use gyro_show::Amount;
 
-/// Has the run tell what formulas of motors, loads and links give, for arrows and plots; what the model file tells of
-/// links itself is not told twice.
+/// Has the run tell what formulas of forces along coordinates, of loads and of links give, for arrows and plots; what
+/// the model file tells itself is not told twice.
 pub(super) fn with_laws(model: &mut Model) {
-    let mut told = Vec::new();
-    for (index, force) in model.forces.iter().enumerate() {
-        let formulas = force.kind.parts().numbers.into_iter().flat_map(|(key, numbers)| {
-            numbers.iter().enumerate().map(move |(place, number)| ((key, place), number.formula()))
-        });
-        let formulas: Vec<_> = formulas.filter_map(|(place, formula)| Some((place, formula?))).collect();
-        match force.kind {
-            ForceKind::Link { .. } if telling(model, index).is_none() && !formulas.is_empty() => {
-                told.push((format!("{}_force", force.name), OutputKind::Link { force: index }));
+    for (index, force) in model.forces.clone().iter().enumerate() {
+        let (is_load, parts) = (matches!(force.kind, ForceKind::Load { .. }), force.kind.parts());
+        for (key, numbers) in parts.numbers {
+            for (formula, axis) in numbers.iter().map(Number::formula).zip(["x", "y", "z"]) {
+                let Some(formula) = formula else { continue };
+                match force.kind {
+                    ForceKind::Link { .. } if of_link(model, index).is_none() => {
+                        add(model, format!("{}_force", force.name), OutputKind::Link { force: index });
+                    }
+                    _ if (is_load || parts.on.is_some()) && telling(model, formula).is_none() => {
+                        let part = if is_load { format!("_{axis}") } else { String::new() };
+                        let name = format!("{}_{key}{part}", force.name);
+                        add(model, name, OutputKind::Formula(formula.clone()));
+                    }
+                    _ => {}
+                }
             }
-            ForceKind::Motor { .. } | ForceKind::Load { .. } => told.extend(
-                formulas
-                    .into_iter()
-                    .map(|(place, formula)| (title(force, place), OutputKind::Formula(formula.clone()))),
-            ),
-            _ => {}
         }
     }
-    told.retain(|(name, _)| model.outputs.iter().all(|output| output.name != *name));
-    model.outputs.extend(told.into_iter().map(|(name, kind)| Output { name, kind }));
+}
+
+/// Adds an output, of another name if this one is taken.
+fn add(model: &mut Model, mut name: String, kind: OutputKind) {
+    while model.outputs.iter().any(|output| output.name == name) {
+        name.push('_');
+    }
+    model.outputs.push(Output { name, kind });
 }
 
 /// A number of a force as the page has it.
-pub(super) fn told(model: &Model, force: &Force, place: (&str, usize), number: &Number) -> Amount {
+pub(super) fn told(model: &Model, number: &Number) -> Amount {
     match number {
         Number::Input { index, negated } => {
             Amount::Input { input: *index, sign: if *negated { -1 } else { 1 } }
         }
-        Number::Formula(_) => Amount::Output { output: title(force, place), part: "" },
+        Number::Formula(formula) => {
+            let output = telling(model, formula).expect("the run tells what formulas give");
+            Amount::Output { output: output.name.clone(), part: "" }
+        }
         other => Amount::Value(model.value(other)),
     }
 }
 
-/// The force of a link by formula.
+/// The force of a link, where an output tells it.
 pub(super) fn of_link(model: &Model, link: usize) -> Option<Amount> {
-    telling(model, link).map(|output| Amount::Output { output: output.name.clone(), part: "force" })
+    let tells = |output: &&Output| matches!(output.kind, OutputKind::Link { force } if force == link);
+    let output = model.outputs.iter().find(tells)?;
+    Some(Amount::Output { output: output.name.clone(), part: "force" })
 }
 
-fn telling(model: &Model, link: usize) -> Option<&Output> {
-    let tells = |kind: &OutputKind| matches!(kind, OutputKind::Link { force } if *force == link);
-    model.outputs.iter().find(|output| tells(&output.kind))
-}
-
-/// The name of the output that tells a number of a force.
-fn title(force: &Force, (key, place): (&str, usize)) -> String {
-    match force.kind {
-        ForceKind::Load { .. } => format!("{}_{key}_{}", force.name, ["x", "y", "z"][place.min(2)]),
-        _ => format!("{}_{key}", force.name),
-    }
+/// The output that tells a formula.
+fn telling<'m>(model: &'m Model, formula: &Formula) -> Option<&'m Output> {
+    let tells = |output: &&Output| output.kind.formula().is_some_and(|known| known.text == formula.text);
+    model.outputs.iter().find(tells)
 }

@@ -277,6 +277,6 @@ fn the_measured_spring_moves_as_its_equation_does() {
     };
     let expected = integrated_one([0.09, 0.0], 0.6, |x, v, _| -(spring.at(x)[0] + damper(v)) / 25.0 - 9.81);
     let found = joint(&example("progressive_spring", "0.6"), "travel");
-    let is_near = |k: usize| (found[k] - expected[k]).abs() < 1e-7;
+    let is_near = |k: usize| (found[k] - expected[k]).abs() < 1e-9;
     assert!(is_near(0) && is_near(1), "{found:?} {expected:?}");
 }

@@ -331,9 +331,9 @@ fn the_quarter_car_drives_over_its_bump() {
 fn the_satellite_comes_back() {
     let run = example("satellite", "8145.599631159027");
     let at = &run["outputs"]["at"];
-    near([at[0].as_f64().unwrap(), at[1].as_f64().unwrap() / 7e6], [7e6, 0.0], 1e-8);
+    near([at[0].as_f64().unwrap(), at[1].as_f64().unwrap() / 7e6], [7e6, 0.0], 1e-9);
     let half = example("satellite", "4072.7998155795136");
-    near([half["outputs"]["distance"].as_f64().unwrap(), 0.0], [10.5e6, 0.0], 1e-8);
+    near([half["outputs"]["distance"].as_f64().unwrap(), 0.0], [10.5e6, 0.0], 1e-9);
 }
 
 /// Upwards against the square of its velocity: `v = √(f/b) tanh(t √(f b) / m)` for a thrust f beyond the weight.

@@ -179,14 +179,17 @@ fn a_parameter_of_either_sign_turns_an_axis_around() {
         fixed = true\n[[body]]\nname = \"rod\"\nmass = 1\ninertia = [1e-4, 0.08, 0.08]\n[[joint]]\nname = \"turn\"\n\
         kind = \"revolute\"\nfirst = { body = \"wall\", axis = [0, 0, \"p\"], zero = [1, 0, 0] }\n\
         second = { body = \"rod\", point = [-0.5, 0, 0], axis = [0, 0, 1], zero = [1, 0, 0] }\n";
-    for sign in [1.0, -1.0] {
+    let shifted = page.replace("p = 2", "p = 1").replace("\"p\"", "\"p - 2\"");
+    for (page, value, sign) in
+        [(page, 1.0, 1.0), (page, -1.0, -1.0), (&shifted, 0.5, -1.0), (&shifted, 5.0, 1.0)]
+    {
         let [x, v] = integrated_one([0.0, 0.0], 0.3, |x, _, _| -sign * 9.81 * 0.5 * x.cos() / 0.33);
         for options in RUNS {
-            let set = format!("p={sign}");
+            let set = format!("p={value}");
             let found = run(page, &[options, &["--set", &set]].concat(), "0.3");
             for (key, expected) in [("position", x), ("rate", v)] {
                 let found = found["joints"]["turn"][key].as_f64().unwrap();
-                assert!((found - expected).abs() < 1e-9, "{sign} {options:?}: {found} for {expected}");
+                assert!((found - expected).abs() < 1e-9, "{value} {options:?}: {found} for {expected}");
             }
         }
     }

@@ -203,9 +203,9 @@ fn the_slider_crank_runs_up_as_its_equations_do() {
     let shaft = &run["joints"]["shaft"];
     let found = [number(&shaft["position"]), number(&shaft["rate"]), output(&run, "motor_current")];
     for (found, expected) in found.into_iter().zip([angle, speed, current]) {
-        assert!((found - expected).abs() < 1e-8 * expected.abs().max(1.0), "{found} {expected}");
+        assert!((found - expected).abs() < 1e-9 * expected.abs().max(1.0), "{found} {expected}");
     }
-    assert!((number(&run["joints"]["cylinder"]["position"]) - place(angle)[2]).abs() < 1e-8);
+    assert!((number(&run["joints"]["cylinder"]["position"]) - place(angle)[2]).abs() < 1e-9);
 }
 
 #[test]

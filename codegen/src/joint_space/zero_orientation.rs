@@ -48,22 +48,29 @@ pub fn orientation_at_zero(system: &mut System, joint: &JointFrames) -> Vec4 {
     graph.scale_vec(inverse, &rows[largest])
 }
 
-/// Of the rows `4 eᵢ e` the one with the largest square. Where a parameter of the other sign turns an axis around, that
-/// may be zero: then a sum `Σ cᵢ 4 eᵢ e` that is zero for no signs of the parameters, with each row's cᵢ of ±1.
+/// Values of the parameters at which rows are tried, besides their own.
+const TRIED: usize = 64;
+
+/// Of the rows `4 eᵢ e` the one with the largest square. Where other values of parameters turn an axis around, that
+/// may be zero: then a sum `Σ cᵢ 4 eᵢ e` that is not, with each row's cᵢ of ±1.
 fn rows_to_add(system: &System, rows: &[Vec4; 4]) -> Vec<(usize, i32)> {
     let (parameters, flat) = (&system.model.parameters, rows.concat());
-    let numbers = |is_negated: &dyn Fn(usize) -> bool| {
+    let numbers = |value: &dyn Fn(usize, f64) -> f64| {
         evaluate(&system.graph, &flat, |symbol| match symbol {
-            Symbol::Parameter(k) => {
-                gyro_model::to_f64(&parameters[k].value) * if is_negated(k) { -1.0 } else { 1.0 }
-            }
+            Symbol::Parameter(k) => value(k, gyro_model::to_f64(&parameters[k].value)),
             _ => f64::NAN,
         })
     };
-    let given = numbers(&|_| false);
+    let given = numbers(&|_, own| own);
     let largest = (0..4).max_by(|&a, &b| given[5 * a].total_cmp(&given[5 * b])).expect("four of them");
-    let one_by_one = (0..parameters.len()).map(|only| numbers(&|k| k == only));
-    let others: Vec<_> = one_by_one.chain([numbers(&|_| true)]).collect();
+    // Of either sign, by powers of two up to 64 times smaller or larger than their own.
+    let other = |n: usize, k: usize, own: f64| {
+        let size = if own == 0.0 { 1.0 } else { own.abs() };
+        let power = i32::try_from(n * (k + 1) % 13).expect("it is small") - 6;
+        let size = size * 2_f64.powi(power);
+        if (n >> (k % 6)) & 1 == 0 { size } else { -size }
+    };
+    let others: Vec<_> = (0..TRIED).map(|n| numbers(&|k, own| other(n, k, own))).collect();
     // Four times the square of Σ cᵢ eᵢ.
     let square = |values: &[f64], c: &[(usize, i32)]| -> f64 {
         c.iter().flat_map(|&(i, a)| c.iter().map(move |&(k, b)| f64::from(a * b) * values[4 * i + k])).sum()

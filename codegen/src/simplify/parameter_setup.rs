@@ -20,7 +20,8 @@ pub fn separate<'r>(
     let mut setup = Setup { graph, places: HashMap::default(), values: Vec::new(), memo: ByExpr::default() };
     for roots in functions {
         if setup.graph.reachable(roots).iter().any(|&id| setup.graph.is_settled(id)) {
-            let gathered = Gathering::of(setup.graph, roots);
+            // What has moved may leave a factor where it has no other use any more.
+            let gathered = (0..PASSES).fold(roots.clone(), |roots, _| Gathering::of(setup.graph, &roots));
             if rounds_well(setup.graph, &gathered, roots) {
                 *roots = gathered;
             }
@@ -29,6 +30,9 @@ pub fn separate<'r>(
     }
     setup.values
 }
+
+/// How often.
+const PASSES: usize = 2;
 
 /// Moves what depends on parameters alone together.
 struct Gathering<'g> {
@@ -67,11 +71,25 @@ impl<'g> Gathering<'g> {
     fn gathered(&mut self, id: ExprId) -> ExprId {
         match self.split(id) {
             Some((factor, rest)) if self.absorbs(rest) => self.scaled(factor, rest),
+            _ if let Some((factor, rest, other)) = self.two_factors(id) => {
+                let (rest, scaled) = (self.memo[rest], self.scaled(factor, other));
+                self.graph.mul(rest, scaled)
+            }
             _ => {
                 let node = self.graph.node(id).with_operands(|operand| self.memo[operand]);
                 self.graph.rebuilt(node)
             }
         }
+    }
+
+    /// Of a product of `factor rest` and of another that absorbs a factor.
+    fn two_factors(&self, id: ExprId) -> Option<(ExprId, ExprId, ExprId)> {
+        let Node::Mul(a, b) = *self.graph.node(id) else { return None };
+        let parted = |id: ExprId, other: ExprId| {
+            let (factor, rest) = self.split(id).filter(|_| self.uses.of(id) == 1)?;
+            self.absorbs(other).then_some((factor, rest, other))
+        };
+        parted(a, b).or_else(|| parted(b, a))
     }
 
     /// Whether a factor vanishes in an expression that nobody else uses.

@@ -44,7 +44,16 @@ fn element(reader: &mut Reader<'_>, mut section: Section<'_>, (index, name): (us
                 numbers.extend(given.map(|number| (key.name, number)));
             }
             Value::Numbers(3, _) | Value::Strengths(_) => {
-                let given = section.find(reader, key.name).and_then(|item| vector::<3>(reader, item));
+                let item = section.find(reader, key.name);
+                let given = item.and_then(|item| vector::<3>(reader, item));
+                let is_zero = given.as_ref().is_some_and(|given| given.iter().all(Number::is_zero));
+                if let Some(item) = item.filter(|_| key.name == "axis" && is_zero) {
+                    let message = format!("the axis of {} is zero", section.title);
+                    item.wrong(
+                        reader,
+                        [message, "no direction".to_owned(), "write axis = [0, 0, 1]".to_owned()],
+                    );
+                }
                 numbers.extend(given.into_iter().flatten().map(|number| (key.name, number)));
             }
             Value::Table(ends) if std::ptr::eq(ends, &raw const COUPLER_END) => {

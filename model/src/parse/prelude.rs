@@ -69,7 +69,15 @@ impl<'a, 't> Expansion<'a, 't> {
             Self { file, table, kind, name: name.get_ref().as_str()?, place: name.span(), pair: None };
         let joint = table.get("joint").and_then(|joint| joint.get_ref().as_str());
         let has = |key: &str| table.contains_key(key);
+        // Of such an axis it is told that it is zero, and of nothing else.
+        let is_zero = |number: &Spanned<DeValue<'_>>| match number.get_ref() {
+            DeValue::Integer(number) => number.as_str().parse() == Ok(0.0),
+            DeValue::Float(number) => number.as_str().parse() == Ok(0.0),
+            _ => false,
+        };
+        let axis = table.get("axis").and_then(|axis| axis.get_ref().as_array());
         let is_whole = lacking(kind, has).is_none()
+            && !axis.is_some_and(|axis| axis.iter().all(is_zero))
             && !(kind.key("closed").is_some() && has("joint") && has("first"))
             && joint.is_none_or(|joint| expansion.joint(joint).is_some());
         is_whole.then_some(expansion)
