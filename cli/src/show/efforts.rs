@@ -23,8 +23,7 @@ fn along(model: &Model, force: &Force) -> Option<Effort> {
         _ => parts.word,
     };
     let numbers = parts.numbers.iter().map(|(key, numbers)| (*key, told(model, &numbers[0])));
-    let numbers = numbers.collect();
-    parts.on.map(|(on, _)| effort(model, on, law, numbers))
+    parts.on.map(|(on, _)| effort(model, on, law, numbers.collect()))
 }
 
 fn effort(
