@@ -53,6 +53,11 @@ zero = [1, 0, 0]
 first = { body = "beam" }
 second = { body = "load" }
 y = -4.02
+[[driver]]                       # as SymPy's particle, which does not turn
+name = "upright"
+joint = "swing"
+coordinate = "angle"
+motion = 0
 [[formula]]
 name = "out"
 of = "4 - step(t, 1, 0, 4, 1.5)"

@@ -10,7 +10,6 @@ use super::coordinates::Coordinates;
 use super::elementary_joints::{Freedom, Station, stations};
 use super::embedding::Embedding;
 use super::mass_moments::{MassMoments, Motion};
-use crate::derive::joint_coordinate::Load;
 use crate::derive::outputs::time_derivative;
 use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
@@ -81,7 +80,7 @@ impl AxisTree {
                 Some(parent) => segments[parent].motion,
                 None => of_ground(system, station.ground),
             };
-            let applied = load(system, &station, &frame, loads);
+            let applied = load(&mut system.graph, &station, &frame, loads);
             let is_unknown = |&(_, rate): &(usize, usize)| !embedding.rates[rate].columns.is_empty();
             let free: Vec<_> = station.freedom.components().into_iter().filter(is_unknown).collect();
             let along = along(system, &station, &free, &coordinates.along);
@@ -391,16 +390,13 @@ fn own_moments(system: &mut System, station: &Station, frame: &Frame) -> MassMom
 }
 
 /// What acts on a body besides gravity, as a wrench in its frame.
-fn load(system: &mut System, station: &Station, frame: &Frame, loads: &[Load]) -> SpatialVector {
+fn load(graph: &mut Graph, station: &Station, frame: &Frame, loads: &[SpatialVector]) -> SpatialVector {
     let Some(moving_body) = station.moving_body else { return SpatialVector::ZERO };
-    let body = system.moving_bodies[moving_body];
-    let (load, a) = (&loads[body], system.poses[body].a);
-    let graph = &mut system.graph;
-    let force = graph.transposed_vec(&a, &load.force);
+    let load = &loads[moving_body];
     let from_origin = graph.neg_vec(&frame.origin);
-    let moment = graph.cross(&from_origin, &force);
-    let torque = graph.add_vec(&load.torque, &moment);
-    SpatialVector { t: graph.mat_vec(&frame.axes, &force), rho: graph.mat_vec(&frame.axes, &torque) }
+    let moment = graph.cross(&from_origin, &load.t);
+    let torque = graph.add_vec(&load.rho, &moment);
+    SpatialVector { t: graph.mat_vec(&frame.axes, &load.t), rho: graph.mat_vec(&frame.axes, &torque) }
 }
 
 /// The force along each free component.

@@ -73,6 +73,7 @@ impl Candidates {
                     .push((axis_loops::WITH_ROWS, axis_loops::accelerations(system, &tree, coordinates)));
             }
         }
+        eliminated.iter_mut().for_each(|(_, roots)| coordinates.put_alone(roots));
         let written = expanded(system, &coordinates.in_joints, &eliminated);
         let in_bodies = (embedding.n_unknowns <= MAX_FACTORED).then(|| written[..n_in_bodies].to_vec());
         let compared = std::iter::once(written.clone()).chain(in_bodies);
@@ -81,11 +82,13 @@ impl Candidates {
         shortest.dedup();
         let spins = spins_at_hand(system, coordinates);
         let on_spins = JointDynamics::new(system, links, &spins, loads, along, (embedding, rows.clone()));
-        let eliminated_on_spins = vec![("recursion on the bodies' spins", on_spins.recursion(system))];
+        let mut eliminated_on_spins = vec![("recursion on the bodies' spins", on_spins.recursion(system))];
         let is_small = (2..=gram_schmidt::MAX_RATES).contains(&embedding.n_unknowns) && rows.rows.is_empty();
-        let by_gram_schmidt = is_small.then(|| ("Gram–Schmidt", balance.by_gram_schmidt(system)));
-        let by_gram_schmidt_on_spins = (is_small && tries_all)
+        let mut by_gram_schmidt = is_small.then(|| ("Gram–Schmidt", balance.by_gram_schmidt(system)));
+        let mut by_gram_schmidt_on_spins = (is_small && tries_all)
             .then(|| ("Gram–Schmidt on the bodies' spins", on_spins.by_gram_schmidt(system)));
+        let others = eliminated_on_spins.iter_mut().chain(&mut by_gram_schmidt);
+        others.chain(&mut by_gram_schmidt_on_spins).for_each(|(_, roots)| coordinates.put_alone(roots));
         Self {
             balance,
             eliminated,

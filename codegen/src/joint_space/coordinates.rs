@@ -1,11 +1,12 @@
 //! Joint coordinates: what is derived before anything is solved.
 
+use super::alone;
 use super::closing_units;
 use super::closure::{self, Closure, Directions};
 use super::cut_armatures::CutArmature;
 use super::determined;
 use super::embedding::Embedding;
-use super::layout::Layout;
+use super::layout::{Layout, LinkCoordinates};
 use super::link_kinematics::{self, LinkKinematics};
 use super::loops::{Loops, RemainingRows};
 use super::relation::{Determined, Relation};
@@ -18,8 +19,10 @@ use crate::expr::definitions::{Expansion, Values};
 use crate::expr::domains::POINTS;
 use crate::expr::evaluate::Program;
 use crate::expr::graph::{ExprId, Graph};
+use crate::expr::schedule::Operations;
+use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::symbol::Symbol;
-use crate::expr::vector::ZERO3;
+use crate::expr::vector::{UNIT3, Vec3, ZERO3};
 use crate::solve::dependence::{self, Yielding};
 use crate::solve::gram_schmidt::Armature;
 use gyro_model::{JointCoordinate, Model, RowOwner, Start, Tree};
@@ -59,8 +62,10 @@ pub struct Coordinates {
     pub armature: Vec<ExprId>,
     /// The armatures of joints that close loops.
     pub cut_armatures: Vec<CutArmature>,
-    /// What else acts on each body of the model.
-    pub loads: Vec<Load>,
+    /// What else acts on each moving body, at its mass centre, in the frame of its dynamics.
+    pub loads: Vec<SpatialVector>,
+    /// The accelerations of the rates of bodies that stand alone.
+    pub alone: Vec<(usize, ExprId)>,
     /// Sets of atoms of which the squares sum to one.
     pub unit: Vec<Vec<ExprId>>,
 }
@@ -143,8 +148,23 @@ impl Coordinates {
         let embedding = loops.embedding(&mut system.graph, &closure, layout.n_rates);
         let embedding = embedding.with_determined(system, &layout, &determined);
         let loads = forces::loads(system, (&layout, &angles), &textbook.dynamics.other_loads);
-        let invariant = invariant_angles(system, &layout, &links, &loads);
+        let is_open = closure.rows.is_empty();
+        let alone = is_open.then(|| alone::accelerations(system, (&layout, &links), &loads));
+        let invariant = invariant_angles(system, (&layout, &links), &loads, &in_joints);
         let links_of_dynamics = links_of(system, &layout, &|x| !invariant.contains(&x));
+        let is_turned =
+            |link: &LinkCoordinates| link.scalars.iter().all(|of| !invariant.contains(&of.place.x));
+        let loads = layout.links.iter().zip(&links_of_dynamics).map(|(link, link_kinematics)| {
+            let load = loads[link.link.body];
+            let force = match is_turned(link) {
+                true => system.graph.transposed_vec(&system.poses[link.link.body].a, &load.force),
+                false => unturned(system, link_kinematics, &load.force),
+            };
+            (link_kinematics.moving_body, SpatialVector { t: force, rho: load.torque })
+        });
+        let mut loads: Vec<_> = loads.collect();
+        loads.sort_unstable_by_key(|&(moving_body, _)| moving_body);
+        let loads = loads.into_iter().map(|(_, load)| load).collect();
         let mut along = forces::along(system, &layout, &angles);
         let armature = forces::armature(system, &layout);
         for ((along, &inertia), motion) in along.iter_mut().zip(&armature).zip(&embedding.rates) {
@@ -174,6 +194,7 @@ impl Coordinates {
             armature,
             cut_armatures,
             loads,
+            alone: alone.unwrap_or_default(),
             unit,
         }
     }
@@ -267,6 +288,11 @@ impl Coordinates {
         rates_of_rates.iter().copied().chain(behind).collect()
     }
 
+    /// Puts the accelerations of bodies that stand alone among those of all rates.
+    pub fn put_alone(&self, accelerations: &mut [ExprId]) {
+        self.alone.iter().for_each(|&(rate, value)| accelerations[rate] = value);
+    }
+
     /// Bodies that are described in a frame that does not turn with them.
     pub fn invariant_bodies(&self) -> Vec<usize> {
         let links = self.layout.links.iter();
@@ -327,13 +353,13 @@ fn links_of(system: &mut System, layout: &Layout, turned: link_kinematics::Turne
 }
 
 /// Angles that turn nothing but a body whose inertia is the same at every angle: a leaf with a single axis, its mass
-/// centre on the axis and its inertia symmetric about it, that no load acts on. The body is then described in a frame
-/// that does not turn with it.
+/// centre on the axis and its inertia symmetric about it, that no load turns across it. The body is then described in a
+/// frame that does not turn with it, unless a load is shorter in one that does.
 fn invariant_angles(
     system: &mut System,
-    layout: &Layout,
-    links: &[LinkKinematics],
+    (layout, links): (&Layout, &[LinkKinematics]),
     loads: &[Load],
+    in_joints: &Values,
 ) -> Vec<usize> {
     let is_leaf = |body: usize| links.iter().all(|link_kinematics| link_kinematics.parent != Some(body));
     let links = layout.links.iter().zip(links);
@@ -342,17 +368,36 @@ fn invariant_angles(
         let [angle] = angles[..] else { return None };
         let turning = link_kinematics.free.iter().find(|free| free.rate == angle.place.u)?;
         let axis = turning.twist.rho;
-        let load = loads[link.link.body];
-        let unloaded = load.force == ZERO3 && load.torque == ZERO3;
         let inertia = system.inertia(link_kinematics.moving_body);
         let graph = &mut system.graph;
         let tilde = graph.tilde(&axis);
         let (left, right) = (graph.mat_mul(&tilde, &inertia), graph.mat_mul(&inertia, &tilde));
         let on_axis = graph.cross(&axis, &link_kinematics.on_body) == ZERO3;
         let symmetric = graph.sub_mat(&left, &right) == [ZERO3; 3];
-        (is_leaf(link.link.body) && unloaded && on_axis && symmetric).then_some(angle.place.x)
+        let Load { force, torque } = loads[link.link.body];
+        let turns_along = graph.cross(&axis, &torque) == ZERO3;
+        if !(is_leaf(link.link.body) && turns_along && on_axis && symmetric) {
+            return None;
+        }
+        let still = LinkKinematics::of(system, link, &|_| false);
+        let ways = [
+            unturned(system, &still, &force),
+            system.graph.transposed_vec(&system.poses[link.link.body].a, &force),
+        ];
+        let [still, turning] = ways.map(|force| {
+            let written = system.expanded(in_joints, &force);
+            Operations::recurring(&system.graph, &written).total()
+        });
+        (still <= turning).then_some(angle.place.x)
     });
     invariant.collect()
+}
+
+/// A global vector in the frame that the body has where its own angles are zero.
+fn unturned(system: &mut System, still: &LinkKinematics, vector: &Vec3) -> Vec3 {
+    let a = still.parent.map_or(UNIT3, |parent| system.poses[parent].a);
+    let on_parent = system.graph.transposed_vec(&a, vector);
+    system.graph.transposed_vec(&still.rotation, &on_parent)
 }
 
 /// Sets of atoms of which the squares sum to one.

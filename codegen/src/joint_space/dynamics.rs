@@ -9,7 +9,6 @@ use super::link_kinematics::{Bias, LinkKinematics};
 use super::loops::RemainingRows;
 use super::lower_triangle::{couple, resistance};
 use crate::derive::dynamics::gyroscopic_torque;
-use crate::derive::joint_coordinate::Load;
 use crate::derive::outputs::time_derivative;
 use crate::derive::system::System;
 use crate::expr::definitions::Values;
@@ -51,13 +50,13 @@ pub struct JointDynamics {
 }
 
 impl JointDynamics {
-    /// `loads` act on each body of the model besides gravity; `along` is the force along each rate of the tree,
+    /// `loads` act on each moving body besides gravity, in its frame; `along` is the force along each rate of the tree,
     /// `armatures` are the inertias that the unknowns turn.
     pub fn new(
         system: &mut System,
         links: &[LinkKinematics],
         spins: &[Vec3],
-        loads: &[Load],
+        loads: &[SpatialVector],
         (along, armatures): (&[ExprId], &[Armature]),
         (embedding, rows): (&Embedding, RemainingRows),
     ) -> Self {
@@ -486,11 +485,9 @@ pub fn of_ground(system: &mut System, link_kinematics: &LinkKinematics, gravity:
 }
 
 /// What a body at constant velocity takes: `w̃'J'w'`, less the loads on it.
-fn inertial(system: &mut System, moving_body: usize, spin: &Vec3, loads: &[Load]) -> SpatialVector {
-    let (inertia, body) = (system.inertia(moving_body), system.moving_bodies[moving_body]);
-    let (load, a) = (&loads[body], system.poses[body].a);
+fn inertial(system: &mut System, moving_body: usize, spin: &Vec3, loads: &[SpatialVector]) -> SpatialVector {
+    let (inertia, load) = (system.inertia(moving_body), &loads[moving_body]);
     let graph = &mut system.graph;
     let gyroscopic = gyroscopic_torque(graph, &inertia, spin);
-    let force = graph.transposed_vec(&a, &load.force);
-    SpatialVector { t: graph.neg_vec(&force), rho: graph.sub_vec(&gyroscopic, &load.torque) }
+    SpatialVector { t: graph.neg_vec(&load.t), rho: graph.sub_vec(&gyroscopic, &load.rho) }
 }

@@ -16,6 +16,7 @@
 //! robots ask for, derivatives as `slopes`,
 //! and the `regressor`.
 
+mod alone;
 mod articulated_inertia;
 mod axis_derivatives;
 mod axis_dynamics;

@@ -12,6 +12,7 @@ use crate::derive::system::System;
 use crate::expr::definitions::Definitions;
 use crate::expr::differentiate::{Derivative, Direction};
 use crate::expr::graph::{ExprId, Graph, Node};
+use crate::expr::spatial_vector::SpatialVector;
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::{Vec3, ZERO3};
 use crate::simplify::normal_form::normal_form;
@@ -49,13 +50,10 @@ struct Planar<'a> {
 /// The accelerations of the rates, if all bodies turn about one direction only, no joint has an armature and no forces
 /// but gravity and those along joint coordinates act.
 pub fn accelerations(system: &mut System, coordinates: &Coordinates) -> Option<Vec<ExprId>> {
-    let is_unloaded = |body: &usize| {
-        let load = coordinates.loads[*body];
-        load.force == ZERO3 && load.torque == ZERO3
-    };
+    let is_unloaded = |load: &SpatialVector| load.t == ZERO3 && load.rho == ZERO3;
     let has_armature = coordinates.armature.iter().any(|&inertia| inertia != Graph::ZERO)
         || !coordinates.cut_armatures.is_empty();
-    if coordinates.closure.rows.is_empty() || has_armature || !system.moving_bodies.iter().all(is_unloaded) {
+    if coordinates.closure.rows.is_empty() || has_armature || !coordinates.loads.iter().all(is_unloaded) {
         return None;
     }
     let planar = Planar::of(system, coordinates)?;
