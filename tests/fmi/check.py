@@ -261,7 +261,7 @@ def follows(gyro, model, folder):
     outputs = [variable.name for variable in description.modelVariables if variable.causality == "output"]
     assert not [name for name in outputs if name not in expected], outputs
     found = fmpy.simulate_fmu(
-        str(archive), fmi_type="CoSimulation", stop_time=end, output_interval=every, relative_tolerance=1e-12, output=outputs
+        str(archive), fmi_type="CoSimulation", stop_time=end, output_interval=every, relative_tolerance=1e-13, output=outputs
     )
     assert np.abs(found["time"] - expected["t"]).max() < 1e-9 * end
     worst = difference(found, expected, outputs)

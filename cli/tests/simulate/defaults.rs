@@ -26,8 +26,8 @@ fn below(folder: &Path, found: &mut Vec<PathBuf>) {
 /// The engine that starts soonest of those that have all there is.
 const FAST: [&str; 4] = ["--engine", "jit", "--effort", "quick"];
 
-/// Scenes whose dampers and bushings are hard: the others take explicit methods fewer steps.
-const STIFF: [&str; 2] = ["four_bar_bushing", "gyroscope_overdamped"];
+/// Scenes whose dampers, bushings or bristles are hard: the others take explicit methods fewer steps.
+const STIFF: [&str; 3] = ["four_bar_bushing", "gyroscope_overdamped", "stick_slip"];
 
 fn runs_well(path: &Path) {
     let (folder, page) =
