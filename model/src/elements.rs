@@ -3,18 +3,19 @@
 use crate::{BodyFrame, Bushing, CoordinateUse, Formula, JointCoordinate, Motion, Number, Seen};
 use std::slice::from_ref;
 
-/// A joint coordinate that follows others: one row, the coordinate less what it is to be.
+/// Joint coordinates that are tied: one row. A joint coordinate that follows others, the coordinate less what it is to
+/// be; or a constraint of one's own.
 #[derive(Clone, Debug)]
 pub struct Coupler {
     /// Name, an identifier.
     pub name: String,
-    /// The coordinate that follows.
-    pub second: JointCoordinate,
-    /// What it is to be.
+    /// The coordinate that follows; of a constraint there is none.
+    pub second: Option<JointCoordinate>,
+    /// What it is to be, or what is to be zero.
     pub by: Coupling,
 }
 
-/// What a coordinate is to be.
+/// What a coordinate is to be, or what is to be zero.
 #[derive(Clone, Debug)]
 pub enum Coupling {
     /// `ratio · first + offset`: a gear, a belt, a rack.
@@ -28,6 +29,21 @@ pub enum Coupling {
     },
     /// A formula of other joint coordinates: a cam, a variable gear.
     Formula(Formula),
+    /// A formula of joint coordinates that is zero.
+    Zero(Formula),
+    /// A formula of joint coordinates and rates, linear in these, that is zero: a row of velocities, of which nothing
+    /// follows for positions. Φ of it counts as zero, its row in Φ_q is what the rates are multiplied by.
+    Rate(Formula),
+}
+
+impl Coupling {
+    /// The formula of a cam or constraint.
+    pub fn formula(&self) -> Option<&Formula> {
+        match self {
+            Self::Linear { .. } => None,
+            Self::Formula(formula) | Self::Zero(formula) | Self::Rate(formula) => Some(formula),
+        }
+    }
 }
 
 impl Coupler {
@@ -36,19 +52,39 @@ impl Coupler {
 
     /// All coordinates of its row.
     pub fn coordinates(&self) -> Vec<JointCoordinate> {
-        let mut all = vec![self.second];
+        let mut all: Vec<_> = self.second.into_iter().collect();
         match &self.by {
             Coupling::Linear { first, .. } => all.insert(0, *first),
-            Coupling::Formula(formula) => all.extend(formula.uses().map(|(on, _)| on)),
+            by => by.formula().into_iter().for_each(|formula| {
+                for (on, _) in formula.uses().filter(|(on, _)| !all.contains(on)).collect::<Vec<_>>() {
+                    all.push(on);
+                }
+            }),
         }
         all
+    }
+
+    /// Those on whose value, turns included, its row depends.
+    pub fn placed(&self) -> Vec<JointCoordinate> {
+        let Some(formula) = self.rate() else { return self.coordinates() };
+        formula.uses().filter(|(_, of)| *of == CoordinateUse::Value).map(|(on, _)| on).collect()
+    }
+
+    /// What kind of section the model file has it in.
+    pub fn word(&self) -> &'static str {
+        if self.second.is_some() { "coupler" } else { "constraint" }
+    }
+
+    /// The formula of a row of velocities.
+    pub fn rate(&self) -> Option<&Formula> {
+        if let Coupling::Rate(formula) = &self.by { Some(formula) } else { None }
     }
 
     /// The driving coordinate with ratio and offset, of a gear.
     pub fn linear(&self) -> Option<(JointCoordinate, &Number, &Number)> {
         match &self.by {
             Coupling::Linear { first, ratio, offset } => Some((*first, ratio, offset)),
-            Coupling::Formula(_) => None,
+            _ => None,
         }
     }
 }

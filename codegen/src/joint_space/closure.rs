@@ -2,9 +2,11 @@
 //! itself changes.
 
 use super::embedding::Embedding;
+use super::forces::OfJoints;
 use super::layout::{Layout, Place};
 use super::relation::Relation;
 use super::whole_angles::WholeAngles;
+use crate::derive::constraints;
 use crate::derive::frames::sine_and_cosine;
 use crate::derive::in_time::in_time;
 use crate::derive::system::System;
@@ -23,6 +25,8 @@ pub struct Closure {
     /// By their places among all rows.
     pub rows: Vec<usize>,
     pub phi: Vec<ExprId>,
+    /// How many rows are of velocities, behind all others: their Φ counts as zero.
+    pub n_of_velocities: usize,
     /// J, by rows: a number for each rate of the state.
     pub jacobian: Vec<Vec<ExprId>>,
     /// `Φ̇ = J u − ν`.
@@ -54,6 +58,15 @@ pub fn rows(
     let phi = normal_form(&mut system.graph, unit, &phi);
     let graph = &mut system.graph;
     rows.into_iter().zip(phi).filter(|&(_, row)| !vanishes(graph, unit, row)).collect()
+}
+
+/// The rows of velocities in joint coordinates and rates.
+fn of_velocities(system: &mut System, layout: &Layout, angles: &WholeAngles) -> Vec<(usize, ExprId)> {
+    let (rows, own): (Vec<_>, Vec<_>) =
+        constraints::of_velocities(system, &OfJoints { layout, angles }).into_iter().unzip();
+    let own = system.expanded(&angles.poses, &own);
+    let held = all_held(system, layout);
+    rows.into_iter().zip(system.expanded(&held, &own)).collect()
 }
 
 /// The values of all coordinates that loops hold; angles that x counts stay symbols.
@@ -109,7 +122,11 @@ impl Closure {
         embedding: &Embedding,
         unit: &[Vec<ExprId>],
     ) -> Self {
-        let (rows, phi): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
+        let of_velocities = of_velocities(system, layout, angles);
+        let n_of_velocities = of_velocities.len();
+        let (mut rows, mut phi): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
+        let (more, own): (Vec<_>, Vec<_>) = of_velocities.into_iter().unzip();
+        rows.extend(more);
         if rows.is_empty() {
             return Self::default();
         }
@@ -123,10 +140,17 @@ impl Closure {
             for (row, &phi) in jacobian.iter_mut().zip(&phi) {
                 row.push(derivative.of(graph, phi));
             }
+            let alone = directions.of_rate_alone(graph, rate);
+            let mut derivative = Derivative::new(&definitions, alone);
+            for (row, &own) in jacobian[phi.len()..].iter_mut().zip(&own) {
+                row.push(derivative.of(graph, own));
+            }
         }
         let motion = directions.of_motion(graph, system.model);
         let mut derivative = Derivative::new(&definitions, motion);
-        let residual: Vec<_> = phi.iter().map(|&phi| derivative.of(graph, phi)).collect();
+        let residual = phi.iter().map(|&phi| derivative.of(graph, phi)).collect::<Vec<_>>();
+        let residual = [residual, own].concat();
+        phi.resize(rows.len(), Graph::ZERO);
         let residual = normal_form(graph, unit, &residual);
         let motion = directions.of_motion(graph, system.model);
         let mut derivative = Derivative::new(&definitions, motion);
@@ -142,7 +166,7 @@ impl Closure {
         let all = normal_form(graph, unit, &all);
         let (entries, gamma) = all.split_at(rows.len() * layout.n_rates);
         let jacobian = entries.chunks(layout.n_rates.max(1)).map(<[_]>::to_vec).collect();
-        Self { rows, phi, jacobian, residual, gamma: gamma.to_vec(), ..Self::default() }
+        Self { rows, phi, n_of_velocities, jacobian, residual, gamma: gamma.to_vec(), ..Self::default() }
     }
 
     /// The rates that change some rows.
@@ -163,8 +187,10 @@ impl Closure {
             _ => None,
         });
         self.holding = held.collect();
+        let n_closing = self.rows.len() - self.n_of_velocities;
         let rows: Vec<_> = self.rows.iter().chain(&self.holding).map(|&row| phi[row]).collect();
         let rows = system.expanded(&angles.poses, &rows);
+        let own: Vec<_> = of_velocities(system, layout, angles).into_iter().map(|(_, row)| row).collect();
         self.by_determined = vec![Vec::new(); rows.len()];
         let every = Embedding::identity(layout.n_tree_rates());
         let directions = Directions { layout, angles, embedding: &every };
@@ -172,7 +198,12 @@ impl Closure {
         for rate in layout.n_rates..layout.n_tree_rates() {
             let direction = directions.of_rate(&mut system.graph, rate);
             let mut derivative = Derivative::new(&definitions, direction);
-            let column: Vec<_> = rows.iter().map(|&row| derivative.of(&mut system.graph, row)).collect();
+            let mut column: Vec<_> = rows.iter().map(|&row| derivative.of(&mut system.graph, row)).collect();
+            let alone = directions.of_rate_alone(&mut system.graph, rate);
+            let mut derivative = Derivative::new(&definitions, alone);
+            for (entry, &row) in column[n_closing..].iter_mut().zip(&own) {
+                *entry = derivative.of(&mut system.graph, row);
+            }
             let held = all_held(system, layout);
             let column = system.expanded(&held, &column);
             self.by_determined.iter_mut().zip(column).for_each(|(row, entry)| row.push(entry));
