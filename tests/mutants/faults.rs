@@ -346,7 +346,7 @@ const FAULTS: &[Fault] = &[
     // The last passes.
     fault("simplify/scales.rs", "pair", "let product = self.graph.mul(x, y);\n                self.with_factor(&«c.mul(&d)», product)", "c.clone()"),
     fault("simplify/scales.rs", "pair", "let (c, x) = self.known[a].clone();\n                («c.neg()», x)", "c"),
-    fault("simplify/scales.rs", "tether", "let c = «c.mul(&inverse)»;", "c"),
+    fault("simplify/scales.rs", "pair", "let c = «c.mul(&inverse)»;", "c"),
     fault("simplify/scales.rs", "bob", "terms[first..].iter_mut().for_each(|(c, _)| *c = «c.neg()»);", "c.clone()"),
     fault("simplify/scales.rs", "bob", "total.map_or(constant, |total| «self.graph.add(total, constant)»)", "total"),
     fault("tape/build.rs", "bob", "return self.difference(«y», x);", "x"),

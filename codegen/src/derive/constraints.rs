@@ -1,10 +1,11 @@
 //! Φ(q, t): the textbook primitives and the joints made of them. Nothing else of a joint is written anywhere: Φ_q, ν
 //! and γ are derived from these rows. Rows of velocities, of which Φ counts as zero, are Ψ(q) q̇.
 
-use crate::derive::frames::{JointFrames, dot1};
+use crate::derive::frames::{JointFrames, dot1, sine_and_cosine};
 use crate::derive::joint_coordinate;
 use crate::derive::laws::{self, OfBodies, Own, Readings};
 use crate::derive::system::System;
+use crate::expr::differentiate::{Derivative, angle_rate};
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::vector::Vec3;
 use gyro_model::{Coupler, Coupling, Formula, JointCoordinate, JointKind, PointAxes, RowOwner, Support};
@@ -42,6 +43,27 @@ pub fn of_velocities(system: &mut System, readings: &impl Readings) -> Vec<(usiz
         }
     }
     rows
+}
+
+/// Joint coordinates of bodies with the derivatives of what they are, on the constraints and off them.
+pub struct AsDefined;
+
+impl Readings for AsDefined {
+    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        joint_coordinate::value(system, on)
+    }
+
+    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        let (joint, kind) = (system.joints[on.joint], system.model.coordinate_kind(on));
+        if !kind.is_angle() {
+            return joint_coordinate::rate(system, on);
+        }
+        let (sine, cosine) = sine_and_cosine(&mut system.graph, kind, &joint, &joint.relative);
+        let motion = system.motion();
+        let mut derivative = Derivative::new(&system.definitions, motion);
+        let rates = [sine, cosine].map(|part| derivative.of(&mut system.graph, part));
+        angle_rate(&mut system.graph, (sine, cosine), rates.into())
+    }
 }
 
 fn seen(system: &mut System, readings: &impl Readings, formula: &Formula) -> ExprId {

@@ -1,10 +1,9 @@
 //! Φ_q, ν and γ, derived from Φ by differentiation.
 
-use crate::derive::constraints;
+use crate::derive::constraints::{self, AsDefined};
 use crate::derive::in_time::in_time;
-use crate::derive::laws::OfBodies;
 use crate::derive::system::System;
-use crate::expr::definitions::{Definitions, Expansion};
+use crate::expr::definitions::Expansion;
 use crate::expr::differentiate::{Derivative, Direction};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
@@ -51,13 +50,12 @@ impl Kinematics {
         let phi_t = along(system, &phi, time);
         let mut nu: Vec<_> = phi_t.iter().map(|&row| system.graph.neg(row)).collect();
         let mut velocity_residual = motion_derivative(system, &phi);
-        for (row, residual) in constraints::of_velocities(system, &OfBodies) {
+        for (row, residual) in constraints::of_velocities(system, &AsDefined) {
             velocity_residual[row] = residual;
             phi_pi[row] = by_velocities(system, residual);
             phi_q[row] = by_coordinates(system, &phi_pi[row]);
             let still = velocities(system).map(|symbol| (symbol, Graph::ZERO)).collect();
-            let at_rest =
-                Expansion::with_values(&Definitions::default(), still).of(&mut system.graph, residual);
+            let at_rest = Expansion::with_values(&system.definitions, still).of(&mut system.graph, residual);
             nu[row] = system.graph.neg(at_rest);
         }
         let second = motion_derivative(system, &velocity_residual);

@@ -172,6 +172,16 @@ impl Kinematics {
         owners.into_iter().map(Equation::Rows).collect()
     }
 
+    /// Those that say where bodies may be: all but rows of velocities.
+    pub(crate) fn of_positions(&self) -> Vec<Equation> {
+        let mut equations = self.equations();
+        equations.retain(|equation| match equation {
+            Equation::Rows(RowOwner::Coupler(k)) => !matches!(self.couplers[*k].by, Numbers::Rate(_)),
+            _ => true,
+        });
+        equations
+    }
+
     pub(crate) fn joints(&self) -> &[JointGeometry] {
         &self.joints
     }

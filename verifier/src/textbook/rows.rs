@@ -181,7 +181,7 @@ impl<F: Field> Evaluation<'_, F> {
         let value = |formula: &Formula| {
             let see = |seen| match seen {
                 Seen::Coordinate(on) => self.coordinate(on, poses),
-                Seen::Rate(on) => Some(self.coordinate(on, poses)?.derivative(zero)),
+                Seen::Rate(on) => self.change(on, poses),
                 _ => None,
             };
             formula::value(self.textbook.model, &self.scope, &see, &formula.text)
