@@ -343,6 +343,14 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/maps.rs", "pair", "let inverse = «graph.recip(norm)»;", "norm"),
     fault("joint_space/zero_orientation.rs", "turned", "if «is_clear(&alone)» { alone }", "true"),
     fault("joint_space/maps.rs", "pair", "let (difference, sum) = («graph.sub(cosine, sine)», graph.add(cosine, sine));", "graph.sub(sine, cosine)"),
+    // Rows of velocities, and rows of one's own.
+    fault("derive/constraints.rs", "sled", "Coupling::Zero(formula) => return «seen(system, &OfBodies, formula)»,", "Graph::ZERO"),
+    fault("derive/constraints.rs", "sled", "«angle_rate(&mut system.graph, (sine, cosine), rates.into())»", "rates[0]"),
+    fault("derive/kinematics.rs", "sled", "velocity_residual[row] = «residual»;", "Graph::ZERO"),
+    fault("derive/kinematics.rs", "sled", "let turned = «graph.scale_vec(two, &[row[3], row[4], row[5]])»;", "[row[3], row[4], row[5]]"),
+    fault("derive/kinematics.rs", "carried-sled", "nu[row] = «system.graph.neg(by_time)»;", "by_time"),
+    fault("joint_space/closure.rs", "sled", "Some(&own) => «by_rate.of(graph, own)»,", "Graph::ZERO"),
+    fault("joint_space/closure.rs", "sled", "«own.get(row).copied()».unwrap_or_else(|| derivative.of(graph, phi))", "None::<ExprId>"),
     // The last passes.
     fault("simplify/scales.rs", "pair", "let product = self.graph.mul(x, y);\n                self.with_factor(&«c.mul(&d)», product)", "c.clone()"),
     fault("simplify/scales.rs", "pair", "let (c, x) = self.known[a].clone();\n                («c.neg()», x)", "c"),

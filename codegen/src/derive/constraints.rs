@@ -5,7 +5,7 @@ use crate::derive::frames::{JointFrames, dot1, sine_and_cosine};
 use crate::derive::joint_coordinate;
 use crate::derive::laws::{self, OfBodies, Own, Readings};
 use crate::derive::system::System;
-use crate::expr::differentiate::{Derivative, angle_rate};
+use crate::expr::differentiate::{Derivative, Direction, angle_rate};
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::vector::Vec3;
 use gyro_model::{Coupler, Coupling, Formula, JointCoordinate, JointKind, PointAxes, RowOwner, Support};
@@ -45,10 +45,11 @@ pub fn of_velocities(system: &mut System, readings: &impl Readings) -> Vec<(usiz
     rows
 }
 
-/// Joint coordinates of bodies with the derivatives of what they are, on the constraints and off them.
-pub struct AsDefined;
+/// Joint coordinates of bodies with the derivatives of what they are along a direction, on the constraints and off
+/// them.
+pub struct Along(pub Direction);
 
-impl Readings for AsDefined {
+impl Readings for Along {
     fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId {
         joint_coordinate::value(system, on)
     }
@@ -56,11 +57,11 @@ impl Readings for AsDefined {
     fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId {
         let (joint, kind) = (system.joints[on.joint], system.model.coordinate_kind(on));
         if !kind.is_angle() {
-            return joint_coordinate::rate(system, on);
+            let value = joint_coordinate::value(system, on);
+            return Derivative::new(&system.definitions, self.0.clone()).of(&mut system.graph, value);
         }
         let (sine, cosine) = sine_and_cosine(&mut system.graph, kind, &joint, &joint.relative);
-        let motion = system.motion();
-        let mut derivative = Derivative::new(&system.definitions, motion);
+        let mut derivative = Derivative::new(&system.definitions, self.0.clone());
         let rates = [sine, cosine].map(|part| derivative.of(&mut system.graph, part));
         angle_rate(&mut system.graph, (sine, cosine), rates.into())
     }

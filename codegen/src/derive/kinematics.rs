@@ -1,9 +1,8 @@
 //! Φ_q, ν and γ, derived from Φ by differentiation.
 
-use crate::derive::constraints::{self, AsDefined};
+use crate::derive::constraints::{self, Along};
 use crate::derive::in_time::in_time;
 use crate::derive::system::System;
-use crate::expr::definitions::Expansion;
 use crate::expr::differentiate::{Derivative, Direction};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
@@ -47,16 +46,17 @@ impl Kinematics {
         let mut phi_pi = columns(system, &phi, &rows_of_moving_bodies, virtual_motions);
 
         let time = in_time(&mut system.graph, system.model);
-        let phi_t = along(system, &phi, time);
+        let phi_t = along(system, &phi, time.clone());
         let mut nu: Vec<_> = phi_t.iter().map(|&row| system.graph.neg(row)).collect();
         let mut velocity_residual = motion_derivative(system, &phi);
-        for (row, residual) in constraints::of_velocities(system, &AsDefined) {
+        for (row, by_time) in constraints::of_velocities(system, &Along(time)) {
+            nu[row] = system.graph.neg(by_time);
+        }
+        let motion = Along(system.motion());
+        for (row, residual) in constraints::of_velocities(system, &motion) {
             velocity_residual[row] = residual;
             phi_pi[row] = by_velocities(system, residual);
             phi_q[row] = by_coordinates(system, &phi_pi[row]);
-            let still = velocities(system).map(|symbol| (symbol, Graph::ZERO)).collect();
-            let at_rest = Expansion::with_values(&system.definitions, still).of(&mut system.graph, residual);
-            nu[row] = system.graph.neg(at_rest);
         }
         let second = motion_derivative(system, &velocity_residual);
         let gamma = second.iter().map(|&row| system.graph.neg(row)).collect();
