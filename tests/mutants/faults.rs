@@ -51,7 +51,7 @@ const FAULTS: &[Fault] = &[
     fault("expr/differentiate.rs", "cam", "let slope = graph.symbol(Symbol::Table { table, order: «order + 1» });", "order"),
     // Φ and its derivatives.
     fault("derive/kinematics.rs", "bob", "let gamma = second.iter().map(|&row| «system.graph.neg(row)»)", "row"),
-    fault("derive/kinematics.rs", "driven-four-bar", "let nu = phi_t.iter().map(|&row| «system.graph.neg(row)»)", "row"),
+    fault("derive/kinematics.rs", "driven-four-bar", "let mut nu: Vec<_> = phi_t.iter().map(|&row| «system.graph.neg(row)»)", "row"),
     fault("derive/kinematics.rs", "bob", "let second = motion_derivative(system, «&velocity_residual»);", "&phi"),
     fault("derive/constraints.rs", "bob", "let aligned = [(i.f, j.h), «(i.g, j.h)», (i.f, j.g)];", "(i.f, j.h)"),
     fault("derive/frames.rs", "bob", "let turned = «graph.mat_vec(relative, b_j)»;", "graph.transposed_vec(relative, b_j)"),
@@ -219,7 +219,7 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/closure.rs", "linkage", "direction.insert(Symbol::Cosine(x), «graph.neg(of_cosine)»);", "of_cosine"),
     fault("joint_space/closure.rs", "driven-four-bar", "(Symbol::Rate(u), «motion.bias»)", "Graph::ZERO"),
     fault("joint_space/closure.rs", "driven-four-bar", "let bias = sum.sum(graph, |_, place| «rates[place.u].bias»);", "Graph::ZERO"),
-    fault("joint_space/closure.rs", "driven-four-bar", "rows.iter().map(|&row| «derivative.of(&mut system.graph, row)»)", "Graph::ZERO"),
+    fault("joint_space/closure.rs", "driven-four-bar", "None => «by_place.of(graph, phi)»,", "Graph::ZERO"),
     fault("joint_space/closure.rs", "drive", "direction.extend(«in_time(graph, model)»);", "Direction::new()"),
     fault("joint_space/loops.rs", "rail", "Solve::Pair { row: [a, b], .. } => vec![*b, «graph.neg(*a)»],", "*a"),
     fault("joint_space/loops.rs", "rail", "let scaled = «graph.mul(rhs[0], *inverse)»;", "rhs[0]"),
