@@ -65,7 +65,8 @@ fn head(model: &Model) -> String {
         format!("{} of freedom", n(model.degrees_of_freedom(), "degree")),
     ];
     let others = [
-        (model.couplers.len(), "coupler"),
+        (model.couplers.iter().filter(|coupler| coupler.second.is_some()).count(), "coupler"),
+        (model.couplers.iter().filter(|coupler| coupler.second.is_none()).count(), "constraint"),
         (model.drivers.len(), "driver"),
         (model.forces.len(), "force"),
         (model.outputs.len(), "output"),

@@ -71,14 +71,12 @@ pub fn coordinates(model: &Model) -> Vec<Shown> {
 pub(crate) fn output_columns(model: &Model, output: &Output) -> Vec<(&'static str, &'static str)> {
     let columns = output.kind.columns();
     let on = match output.kind {
-        OutputKind::Driver { driver } => model.drivers[driver].coordinate,
+        OutputKind::Driver { driver } => Some(model.drivers[driver].coordinate),
         OutputKind::Coupler { coupler } => model.couplers[coupler].second,
-        OutputKind::Spring { force } => match model.forces[force].kind.parts().on {
-            Some((on, _)) => on,
-            None => return columns.to_vec(),
-        },
-        _ => return columns.to_vec(),
+        OutputKind::Spring { force } => model.forces[force].kind.parts().on.map(|(on, _)| on),
+        _ => None,
     };
+    let Some(on) = on else { return columns.to_vec() };
     columns.iter().map(|(suffix, unit)| (*suffix, unit_along(model, on, unit))).collect()
 }
 

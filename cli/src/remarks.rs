@@ -145,7 +145,7 @@ pub(crate) fn kind_and_name(model: &Model, owner: RowOwner) -> (&'static str, &s
     match owner {
         RowOwner::Body(index) => ("body", &model.bodies[index].name),
         RowOwner::Joint(index) => ("joint", &model.joints[index].name),
-        RowOwner::Coupler(index) => ("coupler", &model.couplers[index].name),
+        RowOwner::Coupler(index) => (model.couplers[index].word(), &model.couplers[index].name),
         RowOwner::Driver(index) => ("driver", &model.drivers[index].name),
     }
 }

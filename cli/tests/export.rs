@@ -78,7 +78,7 @@ fn rows(table: &str) -> Vec<Vec<f64>> {
     table.lines().map(row).collect()
 }
 
-/// Of one of `examples/laws`, the worst difference of a column, over its largest magnitude if that is more than 1, and
+/// Of an example, the worst difference of a column, over its largest magnitude if that is more than 1, and
 /// how many columns there are: coordinates and rates by their names in the header, then all outputs.
 fn difference_in_c(model: &Path, name: &str, folder: &Path) -> (f64, usize) {
     let gyro = || Command::new(env!("CARGO_BIN_EXE_gyro"));
@@ -151,12 +151,13 @@ fn difference_in_c(model: &Path, name: &str, folder: &Path) -> (f64, usize) {
 
 #[test]
 #[ignore = "takes long: `.ci/steps` runs it"]
-fn the_laws_in_c_move_as_they_do_here() {
-    let laws = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/laws");
-    let mut models: Vec<_> = fs::read_dir(laws).unwrap().map(|entry| entry.unwrap().path()).collect();
+fn laws_and_constraints_in_c_move_as_they_do_here() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
+    let folders = ["laws", "rolling"].map(|folder| fs::read_dir(examples.join(folder)).unwrap());
+    let mut models: Vec<_> = folders.into_iter().flatten().map(|entry| entry.unwrap().path()).collect();
     models.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     models.sort();
-    assert!(models.len() >= 11, "{models:?}");
+    assert!(models.len() >= 13, "{models:?}");
     for model in &models {
         let name = model.file_stem().unwrap().to_str().unwrap();
         let folder = env::temp_dir().join(format!("gyro-laws-in-c-{}-{name}", std::process::id()));

@@ -1,57 +1,7 @@
-//! What acts between and on bodies besides joints: couplers, drivers, forces; and outputs.
+//! What acts between and on bodies besides joints: drivers, forces; and outputs.
 
 use crate::{BodyFrame, Bushing, CoordinateUse, Formula, JointCoordinate, Motion, Number, Seen};
 use std::slice::from_ref;
-
-/// A joint coordinate that follows others: one row, the coordinate less what it is to be.
-#[derive(Clone, Debug)]
-pub struct Coupler {
-    /// Name, an identifier.
-    pub name: String,
-    /// The coordinate that follows.
-    pub second: JointCoordinate,
-    /// What it is to be.
-    pub by: Coupling,
-}
-
-/// What a coordinate is to be.
-#[derive(Clone, Debug)]
-pub enum Coupling {
-    /// `ratio · first + offset`: a gear, a belt, a rack.
-    Linear {
-        /// The driving coordinate.
-        first: JointCoordinate,
-        /// Ratio; of the units of the two coordinates.
-        ratio: Number,
-        /// Offset, in the unit of the second coordinate.
-        offset: Number,
-    },
-    /// A formula of other joint coordinates: a cam, a variable gear.
-    Formula(Formula),
-}
-
-impl Coupler {
-    /// Most coordinates of its row.
-    pub const MOST: usize = 8;
-
-    /// All coordinates of its row.
-    pub fn coordinates(&self) -> Vec<JointCoordinate> {
-        let mut all = vec![self.second];
-        match &self.by {
-            Coupling::Linear { first, .. } => all.insert(0, *first),
-            Coupling::Formula(formula) => all.extend(formula.uses().map(|(on, _)| on)),
-        }
-        all
-    }
-
-    /// The driving coordinate with ratio and offset, of a gear.
-    pub fn linear(&self) -> Option<(JointCoordinate, &Number, &Number)> {
-        match &self.by {
-            Coupling::Linear { first, ratio, offset } => Some((*first, ratio, offset)),
-            Coupling::Formula(_) => None,
-        }
-    }
-}
 
 /// A joint coordinate prescribed in time: one row `coordinate − motion(t)`.
 #[derive(Clone, Debug)]

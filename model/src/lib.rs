@@ -13,6 +13,7 @@ mod attraction;
 mod contact;
 mod controller;
 mod coordinate;
+mod coupler;
 mod curve;
 mod diagnostics;
 mod directions;
@@ -44,11 +45,10 @@ pub use attraction::Attraction;
 pub use contact::Contact;
 pub use controller::{Controller, Law};
 pub use coordinate::{CoordinateKind, CoordinateUse, JointCoordinate, Seen};
+pub use coupler::{Coupler, Coupling};
 pub use curve::{Beyond, Curve, Joined};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
-pub use elements::{
-    Coupler, Coupling, Driver, Element, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind, StopSide,
-};
+pub use elements::{Driver, Element, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind, StopSide};
 pub use event::{Direction, Event};
 pub use frames::{BodyFrame, Bushing, BushingLaw};
 pub use joint_kind::JointKind;

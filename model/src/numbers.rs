@@ -29,10 +29,10 @@ impl Model {
             numbers.extend(start.orientation.iter().flatten());
         }
         for coupler in &self.couplers {
-            match &coupler.by {
-                Coupling::Linear { first: _, ratio, offset } => numbers.extend([ratio, offset]),
-                Coupling::Formula(formula) => numbers.extend(formula.numbers()),
+            if let Coupling::Linear { first: _, ratio, offset } = &coupler.by {
+                numbers.extend([ratio, offset]);
             }
+            numbers.extend(coupler.by.formula().into_iter().flat_map(Formula::numbers));
         }
         self.drivers.iter().for_each(|driver| driver.motion.add_numbers(&mut numbers));
         self.forces.iter().flat_map(|force| force.kind.parts().numbers).for_each(|(_, of)| {

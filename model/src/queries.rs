@@ -2,9 +2,9 @@
 
 use crate::redundancy::analyse_with_start;
 use crate::{
-    BodyFrame, BodyMotion, CoordinateKind, CoordinateUse, Coupler, Coupling, ForceKind, Formula,
-    JointCoordinate, JointKind, Lines, Model, Motion, Number, Parameter, PointAxes, Rational, RedundantRow,
-    Row, RowOwner, RowUnit, Start, Support, Tree, to_f64,
+    BodyFrame, BodyMotion, CoordinateKind, CoordinateUse, Coupler, ForceKind, Formula, JointCoordinate,
+    JointKind, Lines, Model, Motion, Number, Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner,
+    RowUnit, Start, Support, Tree, to_f64,
 };
 use std::ops::Range;
 
@@ -20,10 +20,7 @@ impl Model {
     pub fn curves_of_equations(&self) -> Vec<usize> {
         let of_forces = self.forces.iter().flat_map(|force| force.kind.parts().numbers);
         let of_forces = of_forces.flat_map(|(_, numbers)| numbers).filter_map(Number::formula);
-        let of_couplers = self.couplers.iter().filter_map(|coupler| match &coupler.by {
-            Coupling::Formula(formula) => Some(formula),
-            Coupling::Linear { .. } => None,
-        });
+        let of_couplers = self.couplers.iter().filter_map(|coupler| coupler.by.formula());
         let of_bodies = self.bodies.iter().filter_map(|body| body.motion.as_ref());
         let motions =
             of_bodies.flat_map(BodyMotion::parts).chain(self.drivers.iter().map(|driver| &driver.motion));
@@ -79,7 +76,8 @@ impl Model {
     /// - point on line: `f_i·d`, `g_i·d`;
     /// - rod: `½ (d·d / length − length)`.
     ///
-    /// A coupler has its second coordinate less what that is to be, a driver `coordinate − motion(t)`.
+    /// A coupler has its second coordinate less what that is to be, a constraint its formula, a driver `coordinate −
+    /// motion(t)`. The unit of a constraint counts as a length if it names a displacement.
     pub fn rows(&self) -> Vec<Row> {
         let all = self.all_rows();
         all.into_iter().filter(|row| !self.dropped().any(|dropped| dropped.row == *row)).collect()
@@ -147,7 +145,12 @@ impl Model {
             own(RowOwner::Joint(index), joint.kind.row_units());
         }
         for (index, coupler) in self.couplers.iter().enumerate() {
-            own(RowOwner::Coupler(index), &[self.coordinate_unit(coupler.second)]);
+            let lengths = || coupler.coordinates().into_iter().any(|on| !self.coordinate_kind(on).is_angle());
+            let constraint = || if lengths() { Length } else { Pure };
+            own(
+                RowOwner::Coupler(index),
+                &[coupler.second.map_or_else(constraint, |on| self.coordinate_unit(on))],
+            );
         }
         for (index, driver) in self.drivers.iter().enumerate() {
             own(RowOwner::Driver(index), &[self.coordinate_unit(driver.coordinate)]);
@@ -211,7 +214,7 @@ impl Model {
         let forces = forces.chain(self.uses_of_formulas());
         used.extend(forces.filter(|(_, of)| *of == CoordinateUse::Value).map(|(on, _)| on));
         used.extend(self.contacts.iter().map(|contact| contact.on));
-        used.extend(self.couplers.iter().flat_map(Coupler::coordinates));
+        used.extend(self.couplers.iter().flat_map(Coupler::placed));
         used.extend(self.drivers.iter().map(|d| d.coordinate));
         let screws = self.joints.iter().enumerate().filter(|(_, j)| j.kind == JointKind::Screw);
         used.extend(screws.map(|(joint, _)| JointCoordinate { joint, coordinate: 0 }));

@@ -1,6 +1,6 @@
 //! Where the formulas of a model stand.
 
-use crate::{BodyMotion, Coupling, ForceKind, Formula, Kink, Model, Motion, Number};
+use crate::{BodyMotion, ForceKind, Formula, Kink, Model, Motion, Number};
 
 /// A formula of a model, and where it stands.
 #[derive(Clone, Debug)]
@@ -47,8 +47,8 @@ impl Model {
             }
         }
         for coupler in &self.couplers {
-            if let Coupling::Formula(formula) = &coupler.by {
-                add("", format!("coupler `{}`", coupler.name), formula);
+            if let Some(formula) = coupler.by.formula() {
+                add("", format!("{} `{}`", coupler.word(), coupler.name), formula);
             }
         }
         let drivers = self.drivers.iter().map(|driver| (format!("driver `{}`", driver.name), &driver.motion));

@@ -133,7 +133,7 @@ fn name<M: Mechanism>(mechanism: &M, owner: Owner) -> String {
         Owner::Body(body) => format!("body `{}`", mechanism.description().bodies[usize::from(body)]),
         Owner::Joint(joint) => format!("joint `{}`", mechanism.description().joints[usize::from(joint)].name),
         Owner::Coupler(coupler) => {
-            format!("coupler `{}`", mechanism.description().couplers[usize::from(coupler)])
+            format!("coupler or constraint `{}`", mechanism.description().couplers[usize::from(coupler)])
         }
         Owner::Driver(driver) => format!("driver `{}`", mechanism.description().drivers[usize::from(driver)]),
     }

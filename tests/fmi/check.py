@@ -34,8 +34,9 @@ MECHANISMS = [
     ("examples/arm/arm.toml", "dop853", 1.0, {"motor": -2.0}),
     ("models/gyroscope-stiff.toml", "rodas4", 0.01, {}),
 ]
-# Laws, states and curves: each in co-simulation at a fine tolerance, against `simulate`.
-LAWS = sorted((Path(__file__).resolve().parents[2] / "examples/laws").glob("*.toml"))
+# Laws, states, curves and constraints: each in co-simulation at a fine tolerance, against `simulate`.
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+LAWS = sorted([*(EXAMPLES / "laws").glob("*.toml"), *(EXAMPLES / "rolling").glob("*.toml")])
 END, SAMPLE = 1.0, 0.01
 
 

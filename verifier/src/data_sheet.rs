@@ -115,7 +115,7 @@ fn left_out(model: &Model, module: &Module) -> Vec<String> {
         let (kind, name) = match redundant.row.owner {
             RowOwner::Body(body) => ("body", &model.bodies[body].name),
             RowOwner::Joint(joint) => ("joint", &model.joints[joint].name),
-            RowOwner::Coupler(coupler) => ("coupler", &model.couplers[coupler].name),
+            RowOwner::Coupler(coupler) => (model.couplers[coupler].word(), &model.couplers[coupler].name),
             RowOwner::Driver(driver) => ("driver", &model.drivers[driver].name),
         };
         left_out.push(format!("row {} of {kind} `{name}` (redundant)", redundant.row.index + 1));

@@ -7,7 +7,7 @@ use crate::model::course::Course;
 use crate::model::gradient::{Gradient, OF_FORMULA, OF_TWO_JOINTS};
 use crate::model::lowered::Lowered;
 use crate::model::measure::Term;
-use crate::model::motion::{Motion, along_p, along_pi};
+use crate::model::motion::{Motion, along_p, along_pi, along_turns};
 use crate::model::place::Moment;
 use crate::model::primitives::{Pull, Turning};
 use crate::model::rows::Row;
@@ -61,7 +61,7 @@ impl<T: Number> Lowered<T> {
     pub(crate) fn phi_q(&self, at: Moment<'_, T>, mut sink: impl FnMut(usize, usize, T)) {
         // The orientation rows are linear in p: rows e1 to e3 of p̄₀ ∘ p, which are G(p₀) p.
         let orientation = |body: &Constrained<T>| g_matrix(&body.p0);
-        self.for_each_gradient(at, along_p, orientation, &mut sink);
+        self.for_each_gradient(at, [along_p, along_turns], orientation, &mut sink);
         for moving_body in 0..self.scene.n_bodies() {
             let p = self.scene.p(at.y, moving_body);
             (0..4).for_each(|k| {
@@ -73,7 +73,7 @@ impl<T: Number> Lowered<T> {
     /// (Φ_r, Φ_π'), joint rows, columns (r, π') body after body.
     pub(crate) fn phi_pi(&self, at: Moment<'_, T>, mut sink: impl FnMut(usize, usize, T)) {
         let orientation = |body: &Constrained<T>| orientation_block(&self.relative_orientation(at.y, body));
-        self.for_each_gradient(at, along_pi, orientation, &mut sink);
+        self.for_each_gradient(at, [along_pi; 2], orientation, &mut sink);
     }
 
     /// Writes ν = −Φ_t: minus the rates of the rows while all bodies with coordinates rest.
@@ -89,7 +89,10 @@ impl<T: Number> Lowered<T> {
                 Row::Measured { terms, course } => {
                     -self.measured_jet(terms, course.as_ref(), &mut resting)[1]
                 }
-                Row::Followed { second, formula } => -self.followed_jet(second, formula, &mut resting)[1],
+                Row::Followed { second, formula } => {
+                    -self.followed_jet(second.as_ref(), formula, &mut resting)[1]
+                }
+                Row::Rolling(formula) => -self.rolling_jet(formula, &mut resting)[1],
             };
         }
     }
@@ -120,7 +123,8 @@ impl<T: Number> Lowered<T> {
                     self.constrained_jet(at.y, &self.scene.constrained[*body], *component)
                 }
                 Row::Measured { terms, course } => self.measured_jet(terms, course.as_ref(), &mut pairs),
-                Row::Followed { second, formula } => self.followed_jet(second, formula, &mut pairs),
+                Row::Followed { second, formula } => self.followed_jet(second.as_ref(), formula, &mut pairs),
+                Row::Rolling(formula) => self.rolling_jet(formula, &mut pairs),
             };
             f(index, jet);
         }
@@ -165,11 +169,12 @@ impl<T: Number> Lowered<T> {
         [row, rate, -w.norm_squared() * number(0.25) * row]
     }
 
-    /// Calls the sink with the entries of all rows; `orientation` is the derivative of a constrained body's eq. (6).
+    /// Calls the sink with the entries of all rows, those of velocities by the second way of turning; `orientation` is
+    /// the derivative of a constrained body's eq. (6).
     fn for_each_gradient<const N: usize>(
         &self,
         at: Moment<'_, T>,
-        turning: Turning<T, N>,
+        [turning, rolling]: [Turning<T, N>; 2],
         orientation: impl Fn(&Constrained<T>) -> SMatrix<T, 3, N>,
         sink: &mut impl FnMut(usize, usize, T),
     ) {
@@ -183,12 +188,16 @@ impl<T: Number> Lowered<T> {
                 }
                 Row::Measured { terms, .. } => self.measured_gradient(terms, &mut pairs, turning, sink),
                 Row::Followed { second, formula } => {
-                    let jets = self.jets(&formula.terms, &mut pairs);
-                    let slopes = formula.slopes(&jets).into_iter();
-                    let followed = formula.terms.iter().zip(slopes);
-                    let followed = followed.map(|(term, slope)| Term { factor: -slope, ..*term });
-                    let terms: Vec<_> = std::iter::once(*second).chain(followed).collect();
+                    let slopes = formula.slopes(&self.jets(&formula.terms, &mut pairs), false);
+                    let sign = if second.is_some() { -T::one() } else { T::one() };
+                    let terms =
+                        second.iter().copied().chain(formula.times(&slopes, sign)).collect::<Vec<_>>();
                     self.summed_gradient::<N, OF_FORMULA>(&terms, &mut pairs, turning, sink);
+                }
+                Row::Rolling(formula) => {
+                    let slopes = formula.slopes(&self.jets(&formula.terms, &mut pairs), true);
+                    let terms: Vec<_> = formula.times(&slopes, T::one()).collect();
+                    self.summed_gradient::<N, OF_FORMULA>(&terms, &mut pairs, rolling, sink);
                 }
             }
         }
@@ -213,10 +222,22 @@ impl<T: Number> Lowered<T> {
         terms.iter().map(one).collect()
     }
 
-    fn followed_jet(&self, second: &Term<T>, formula: &Tracked<T>, pairs: &mut Pairs<'_, T>) -> [T; 3] {
-        let wanted = formula.jet(&self.jets(&formula.terms, pairs), pairs.at.t);
+    fn followed_jet(
+        &self,
+        second: Option<&Term<T>>,
+        formula: &Tracked<T>,
+        pairs: &mut Pairs<'_, T>,
+    ) -> [T; 3] {
+        let value = formula.jet(&self.jets(&formula.terms, pairs), pairs.at.t);
+        let Some(second) = second else { return value };
         let jets = self.jets(std::slice::from_ref(second), pairs);
-        [0, 1, 2].map(|k| jets[0][k] - wanted[k])
+        [0, 1, 2].map(|k| jets[0][k] - value[k])
+    }
+
+    /// What changes at the rate that the formula tells, and counts as zero.
+    fn rolling_jet(&self, formula: &Tracked<T>, pairs: &mut Pairs<'_, T>) -> [T; 3] {
+        let [rate, second, _] = formula.jet(&self.jets(&formula.terms, pairs), pairs.at.t);
+        [T::zero(), rate, second]
     }
 
     fn measured_gradient<const N: usize>(

@@ -1,6 +1,6 @@
 //! Where a body is and how it moves, and the vectors and points fixed in it.
 
-use crate::model::textbook::{rotated_gradient, rotation};
+use crate::model::textbook::{g_matrix, rotated_gradient, rotation};
 use crate::number::{Number, number};
 use nalgebra::{Matrix3, RealField, RowVector3, RowVector4, Vector3, Vector4};
 
@@ -117,6 +117,15 @@ pub(crate) fn along_p<T: RealField + Copy>(
     a: &Vector3<T>,
 ) -> RowVector4<T> {
     x.transpose() * rotated_gradient(&motion.p, a)
+}
+
+/// The same by rates of p, of which only what turns counts: by `w' = 2 G ṗ`.
+pub(crate) fn along_turns<T: RealField + Copy>(
+    motion: &Motion<T>,
+    x: &Vector3<T>,
+    a: &Vector3<T>,
+) -> RowVector4<T> {
+    along_pi(motion, x, a) * g_matrix(&motion.p) * nalgebra::convert::<f64, T>(2.0)
 }
 
 /// `∂(xᵀ A a')/∂π' = −xᵀ A ã'`, which is `(a' × Aᵀx)ᵀ`.

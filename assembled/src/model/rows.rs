@@ -15,8 +15,10 @@ pub(crate) enum Row<T> {
     Constrained { body: usize, component: usize },
     /// `Σ factor · measure − course(t)`.
     Measured { terms: Vec<Term<T>>, course: Option<Course> },
-    /// What a joint measures less a formula of what others do.
-    Followed { second: Term<T>, formula: Tracked<T> },
+    /// A formula of what joints measure, or what one measures less that.
+    Followed { second: Option<Term<T>>, formula: Tracked<T> },
+    /// A formula of what joints measure and of its rates, linear in these: of velocities.
+    Rolling(Tracked<T>),
 }
 
 impl<T: Number> Row<T> {
@@ -51,13 +53,18 @@ impl<T: Number> Row<T> {
                 let coupler = &model.couplers[coupler];
                 match &coupler.by {
                     Coupling::Linear { first, ratio, offset } => Self::Measured {
-                        terms: vec![coordinate(1.0, coupler.second), coordinate(-model.value(ratio), *first)],
+                        terms: (coupler.second.map(|on| coordinate(1.0, on)).into_iter())
+                            .chain([coordinate(-model.value(ratio), *first)])
+                            .collect(),
                         course: Some(Course::constant(model.value(offset))),
                     },
-                    Coupling::Formula(formula) => Self::Followed {
-                        second: coordinate(1.0, coupler.second),
+                    Coupling::Formula(formula) | Coupling::Zero(formula) => Self::Followed {
+                        second: coupler.second.map(|on| coordinate(1.0, on)),
                         formula: Tracked::new(model, formula, |on| coordinate(1.0, on)),
                     },
+                    Coupling::Rate(formula) => {
+                        Self::Rolling(Tracked::new(model, formula, |on| coordinate(1.0, on)))
+                    }
                 }
             }
             RowOwner::Driver(driver) => {

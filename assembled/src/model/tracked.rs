@@ -24,7 +24,12 @@ impl<T: Number> Tracked<T> {
             Operation::Number(value) => number(model.value(value)),
             _ => T::zero(),
         };
-        let coordinates: Vec<_> = formula.uses().map(|(on, _)| on).collect();
+        let mut coordinates: Vec<_> = Vec::new();
+        for (on, _) in formula.uses() {
+            if !coordinates.contains(&on) {
+                coordinates.push(on);
+            }
+        }
         Self {
             formula: formula.clone(),
             curves: Curves::of(model, formula),
@@ -47,20 +52,30 @@ impl<T: Number> Tracked<T> {
                 let place = self.coordinates.iter().position(|known| known == on);
                 place.map_or([zero; 3], |place| coordinates[place])
             }
+            Operation::Seen(Seen::Rate(on)) => {
+                let place = self.coordinates.iter().position(|known| known == on);
+                place.map_or([zero; 3], |place| [coordinates[place][1], coordinates[place][2], zero])
+            }
             // The reader allows nothing else.
             Operation::Seen(_) => [t, T::one(), zero],
             _ => [self.numbers[place], zero, zero],
         })
     }
 
-    /// The derivatives by each coordinate.
-    pub(crate) fn slopes(&self, coordinates: &[Jet<T>]) -> Vec<T> {
+    /// The derivatives by each coordinate, or by each rate of what is linear in rates.
+    pub(crate) fn slopes(&self, coordinates: &[Jet<T>], by_rates: bool) -> Vec<T> {
         let one = |by: usize| {
             let seeded = coordinates.iter().enumerate().map(|(place, [value, ..])| {
                 [*value, if place == by { T::one() } else { T::zero() }, T::zero()]
             });
-            self.jet(&seeded.collect::<Vec<_>>(), T::zero())[1]
+            // What is linear in rates is its own derivative by one of them.
+            self.jet(&seeded.collect::<Vec<_>>(), T::zero())[usize::from(!by_rates)]
         };
         (0..coordinates.len()).map(one).collect()
+    }
+
+    /// The coordinates times their derivatives.
+    pub(crate) fn times<'a>(&'a self, slopes: &'a [T], sign: T) -> impl Iterator<Item = Term<T>> + 'a {
+        self.terms.iter().zip(slopes).map(move |(term, slope)| Term { factor: sign * *slope, ..*term })
     }
 }

@@ -24,6 +24,7 @@ mod loads;
 mod orientation;
 mod plants;
 mod refusals;
+mod rolling;
 mod states;
 mod stops;
 mod support;

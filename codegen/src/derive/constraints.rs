@@ -1,13 +1,14 @@
 //! Φ(q, t): the textbook primitives and the joints made of them. Nothing else of a joint is written anywhere: Φ_q, ν
-//! and γ are derived from these rows.
+//! and γ are derived from these rows. Rows of velocities, of which Φ counts as zero, are Ψ(q) q̇.
 
-use crate::derive::frames::{JointFrames, dot1};
+use crate::derive::frames::{JointFrames, dot1, sine_and_cosine};
 use crate::derive::joint_coordinate;
-use crate::derive::laws::{self, OfBodies, Own};
+use crate::derive::laws::{self, OfBodies, Own, Readings};
 use crate::derive::system::System;
+use crate::expr::differentiate::{Derivative, Direction, angle_rate};
 use crate::expr::graph::{ExprId, Graph};
 use crate::expr::vector::Vec3;
-use gyro_model::{Coupler, Coupling, JointCoordinate, JointKind, PointAxes, Support};
+use gyro_model::{Coupler, Coupling, Formula, JointCoordinate, JointKind, PointAxes, RowOwner, Support};
 
 /// The rows of `Model::rows`, in their order.
 pub fn rows(system: &mut System) -> Vec<ExprId> {
@@ -32,6 +33,44 @@ pub fn rows(system: &mut System) -> Vec<ExprId> {
     all.iter().zip(rows).filter(|(row, _)| kept.contains(row)).map(|(_, phi)| phi).collect()
 }
 
+/// The rows of velocities, by their places among the rows.
+pub fn of_velocities(system: &mut System, readings: &impl Readings) -> Vec<(usize, ExprId)> {
+    let mut rows = Vec::new();
+    for (index, coupler) in system.model.couplers.iter().enumerate() {
+        let row = system.model.rows_of(RowOwner::Coupler(index)).next();
+        if let (Some(formula), Some(row)) = (coupler.rate(), row) {
+            rows.push((row, seen(system, readings, formula)));
+        }
+    }
+    rows
+}
+
+/// Joint coordinates of bodies with the derivatives of what they are along a direction, on the constraints and off
+/// them.
+pub struct Along(pub Direction);
+
+impl Readings for Along {
+    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        joint_coordinate::value(system, on)
+    }
+
+    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        let (joint, kind) = (system.joints[on.joint], system.model.coordinate_kind(on));
+        if !kind.is_angle() {
+            let value = joint_coordinate::value(system, on);
+            return Derivative::new(&system.definitions, self.0.clone()).of(&mut system.graph, value);
+        }
+        let (sine, cosine) = sine_and_cosine(&mut system.graph, kind, &joint, &joint.relative);
+        let mut derivative = Derivative::new(&system.definitions, self.0.clone());
+        let rates = [sine, cosine].map(|part| derivative.of(&mut system.graph, part));
+        angle_rate(&mut system.graph, (sine, cosine), rates.into())
+    }
+}
+
+fn seen(system: &mut System, readings: &impl Readings, formula: &Formula) -> ExprId {
+    laws::value(system, formula, |system, seen| laws::see(system, readings, Own::Nothing, seen))
+}
+
 /// The rows of a joint, redundant ones included.
 fn joint_rows(system: &mut System, index: usize) -> Vec<ExprId> {
     let joint = system.joints[index];
@@ -53,19 +92,22 @@ fn joint_rows(system: &mut System, index: usize) -> Vec<ExprId> {
     rows
 }
 
-/// `second − ratio · first − offset`, or the second coordinate less a formula of others.
+/// `second − ratio · first − offset`, the second coordinate less a formula of others, or a formula that is zero.
 fn coupled(system: &mut System, coupler: &Coupler) -> ExprId {
+    let value = |system: &mut System| {
+        coupler.second.map_or(Graph::ZERO, |second| joint_coordinate::value(system, second))
+    };
     let (first, ratio, offset) = match &coupler.by {
         Coupling::Linear { first, ratio, offset } => (*first, ratio, offset),
         Coupling::Formula(formula) => {
-            let second = joint_coordinate::value(system, coupler.second);
-            let wanted =
-                laws::value(system, formula, |system, seen| laws::see(system, &OfBodies, Own::Nothing, seen));
+            let second = value(system);
+            let wanted = seen(system, &OfBodies, formula);
             return system.graph.sub(second, wanted);
         }
+        Coupling::Zero(formula) => return seen(system, &OfBodies, formula),
+        Coupling::Rate(_) => return Graph::ZERO,
     };
-    let (first, second) =
-        (joint_coordinate::value(system, first), joint_coordinate::value(system, coupler.second));
+    let (first, second) = (joint_coordinate::value(system, first), value(system));
     let [ratio, offset] = [ratio, offset].map(|number| system.number(number));
     let driven = system.graph.mul(ratio, first);
     let lag = system.graph.sub(second, driven);

@@ -1,6 +1,6 @@
 //! Φ_q, ν and γ, derived from Φ by differentiation.
 
-use crate::derive::constraints;
+use crate::derive::constraints::{self, Along};
 use crate::derive::in_time::in_time;
 use crate::derive::system::System;
 use crate::expr::differentiate::{Derivative, Direction};
@@ -39,16 +39,25 @@ impl Kinematics {
         let n_moving_bodies = system.moving_bodies.len();
 
         let rows_of_moving_bodies = rows_of_moving_bodies(system, &all);
-        let phi_q = columns(system, &all, &rows_of_moving_bodies, coordinate_directions(n_moving_bodies));
+        let mut phi_q = columns(system, &all, &rows_of_moving_bodies, coordinate_directions(n_moving_bodies));
         let rotations = (0..n_moving_bodies).flat_map(|moving_body| (0..6).map(move |k| (moving_body, k)));
         let virtual_motions =
             rotations.map(|(moving_body, k)| system.unit_direction(moving_body, k)).collect();
-        let phi_pi = columns(system, &phi, &rows_of_moving_bodies, virtual_motions);
+        let mut phi_pi = columns(system, &phi, &rows_of_moving_bodies, virtual_motions);
 
         let time = in_time(&mut system.graph, system.model);
-        let phi_t = along(system, &phi, time);
-        let nu = phi_t.iter().map(|&row| system.graph.neg(row)).collect();
-        let velocity_residual = motion_derivative(system, &phi);
+        let phi_t = along(system, &phi, time.clone());
+        let mut nu: Vec<_> = phi_t.iter().map(|&row| system.graph.neg(row)).collect();
+        let mut velocity_residual = motion_derivative(system, &phi);
+        for (row, by_time) in constraints::of_velocities(system, &Along(time)) {
+            nu[row] = system.graph.neg(by_time);
+        }
+        let motion = Along(system.motion());
+        for (row, residual) in constraints::of_velocities(system, &motion) {
+            velocity_residual[row] = residual;
+            phi_pi[row] = by_velocities(system, residual);
+            phi_q[row] = by_coordinates(system, &phi_pi[row]);
+        }
         let second = motion_derivative(system, &velocity_residual);
         let gamma = second.iter().map(|&row| system.graph.neg(row)).collect();
         Self { phi, normalisations, phi_q, phi_pi, velocity_residual, nu, gamma }
@@ -58,6 +67,39 @@ impl Kinematics {
     pub fn rotation(&self, row: usize, moving_body: usize) -> Vec3 {
         std::array::from_fn(|k| self.phi_pi[row][6 * moving_body + 3 + k])
     }
+}
+
+/// s and w' of each moving body.
+fn velocities(system: &System) -> impl Iterator<Item = Symbol> + use<> {
+    let of = |moving_body| {
+        let s = (0..3).map(move |k| Symbol::Velocity { moving_body, k });
+        s.chain((0..3).map(move |k| Symbol::Spin { moving_body, k }))
+    };
+    (0..system.moving_bodies.len()).flat_map(of)
+}
+
+/// What each velocity is multiplied by in a row of velocities.
+fn by_velocities(system: &mut System, residual: ExprId) -> Vec<ExprId> {
+    let velocities = velocities(system);
+    let of = |symbol| {
+        let direction = Direction::from([(symbol, Graph::ONE)]);
+        Derivative::new(&system.definitions, direction).of(&mut system.graph, residual)
+    };
+    velocities.map(of).collect()
+}
+
+/// The same for rates of (r, p), by `w' = 2 G ṗ`.
+fn by_coordinates(system: &mut System, row: &[ExprId]) -> Vec<ExprId> {
+    let bodies = system.moving_bodies.iter().map(|&body| system.poses[body].p).zip(row.chunks(6));
+    let graph = &mut system.graph;
+    let of = |(p, row): ([ExprId; 4], &[ExprId])| {
+        let two = graph.integer(2);
+        let turned = graph.scale_vec(two, &[row[3], row[4], row[5]]);
+        let g = graph.g_matrix(&p);
+        let by_p = [0, 1, 2, 3].map(|k| graph.dot(&turned, &[g[0][k], g[1][k], g[2][k]]));
+        row[..3].iter().copied().chain(by_p).collect::<Vec<_>>()
+    };
+    bodies.flat_map(of).collect()
 }
 
 /// Row, column and value of each entry that is not zero, row by row.

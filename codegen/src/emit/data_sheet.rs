@@ -331,7 +331,10 @@ fn owner_name(model: &Model, owner: RowOwner) -> String {
     match owner {
         RowOwner::Body(body) => format!("body `{}`", model.bodies[body].name),
         RowOwner::Joint(joint) => format!("joint `{}`", model.joints[joint].name),
-        RowOwner::Coupler(coupler) => format!("coupler `{}`", model.couplers[coupler].name),
+        RowOwner::Coupler(coupler) => {
+            let coupler = &model.couplers[coupler];
+            format!("{} `{}`", coupler.word(), coupler.name)
+        }
         RowOwner::Driver(driver) => format!("driver `{}`", model.drivers[driver].name),
     }
 }

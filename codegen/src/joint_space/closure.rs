@@ -2,9 +2,11 @@
 //! itself changes.
 
 use super::embedding::Embedding;
+use super::forces::OfJoints;
 use super::layout::{Layout, Place};
 use super::relation::Relation;
 use super::whole_angles::WholeAngles;
+use crate::derive::constraints;
 use crate::derive::frames::sine_and_cosine;
 use crate::derive::in_time::in_time;
 use crate::derive::system::System;
@@ -15,7 +17,7 @@ use crate::expr::symbol::Symbol;
 use crate::simplify::normal_form::{normal_form, vanishes};
 use gyro_model::{Model, RowOwner};
 use std::array::from_fn;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// `Φ_c(t, x) = 0`, in terms of joint coordinates and of the sines and cosines of angles.
 #[derive(Clone, Debug, Default)]
@@ -23,6 +25,8 @@ pub struct Closure {
     /// By their places among all rows.
     pub rows: Vec<usize>,
     pub phi: Vec<ExprId>,
+    /// How many of them are of velocities: their Φ counts as zero.
+    pub n_of_velocities: usize,
     /// J, by rows: a number for each rate of the state.
     pub jacobian: Vec<Vec<ExprId>>,
     /// `Φ̇ = J u − ν`.
@@ -54,6 +58,15 @@ pub fn rows(
     let phi = normal_form(&mut system.graph, unit, &phi);
     let graph = &mut system.graph;
     rows.into_iter().zip(phi).filter(|&(_, row)| !vanishes(graph, unit, row)).collect()
+}
+
+/// The rows of velocities in joint coordinates and rates.
+fn of_velocities(system: &mut System, layout: &Layout, angles: &WholeAngles) -> Vec<(usize, ExprId)> {
+    let (rows, own): (Vec<_>, Vec<_>) =
+        constraints::of_velocities(system, &OfJoints { layout, angles }).into_iter().unzip();
+    let own = system.expanded(&angles.poses, &own);
+    let held = all_held(system, layout);
+    rows.into_iter().zip(system.expanded(&held, &own)).collect()
 }
 
 /// The values of all coordinates that loops hold; angles that x counts stay symbols.
@@ -109,24 +122,28 @@ impl Closure {
         embedding: &Embedding,
         unit: &[Vec<ExprId>],
     ) -> Self {
-        let (rows, phi): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
+        let own: BTreeMap<_, _> = of_velocities(system, layout, angles).into_iter().collect();
+        let mut rows = rows;
+        rows.extend(own.keys().map(|&row| (row, Graph::ZERO)));
+        rows.sort_unstable_by_key(|&(row, _)| row);
         if rows.is_empty() {
             return Self::default();
         }
+        let (rows, phi): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
         let definitions = counted_angles(system, layout, angles);
         let directions = Directions { layout, angles, embedding };
         let graph = &mut system.graph;
         let mut jacobian = vec![Vec::new(); rows.len()];
         for rate in 0..layout.n_rates {
-            let unit_rate = directions.of_rate(graph, rate);
-            let mut derivative = Derivative::new(&definitions, unit_rate);
-            for (row, &phi) in jacobian.iter_mut().zip(&phi) {
-                row.push(derivative.of(graph, phi));
-            }
+            let column = directions.column(graph, &definitions, (&rows, &phi, &own), rate);
+            jacobian.iter_mut().zip(column).for_each(|(row, entry)| row.push(entry));
         }
         let motion = directions.of_motion(graph, system.model);
         let mut derivative = Derivative::new(&definitions, motion);
-        let residual: Vec<_> = phi.iter().map(|&phi| derivative.of(graph, phi)).collect();
+        let residual = rows.iter().zip(&phi);
+        let residual =
+            residual.map(|(row, &phi)| own.get(row).copied().unwrap_or_else(|| derivative.of(graph, phi)));
+        let residual: Vec<_> = residual.collect();
         let residual = normal_form(graph, unit, &residual);
         let motion = directions.of_motion(graph, system.model);
         let mut derivative = Derivative::new(&definitions, motion);
@@ -142,7 +159,8 @@ impl Closure {
         let all = normal_form(graph, unit, &all);
         let (entries, gamma) = all.split_at(rows.len() * layout.n_rates);
         let jacobian = entries.chunks(layout.n_rates.max(1)).map(<[_]>::to_vec).collect();
-        Self { rows, phi, jacobian, residual, gamma: gamma.to_vec(), ..Self::default() }
+        let n_of_velocities = own.len();
+        Self { rows, phi, n_of_velocities, jacobian, residual, gamma: gamma.to_vec(), ..Self::default() }
     }
 
     /// The rates that change some rows.
@@ -163,16 +181,16 @@ impl Closure {
             _ => None,
         });
         self.holding = held.collect();
-        let rows: Vec<_> = self.rows.iter().chain(&self.holding).map(|&row| phi[row]).collect();
-        let rows = system.expanded(&angles.poses, &rows);
+        let rows: Vec<_> = self.rows.iter().chain(&self.holding).copied().collect();
+        let phi: Vec<_> = rows.iter().map(|&row| phi[row]).collect();
+        let phi = system.expanded(&angles.poses, &phi);
+        let own: BTreeMap<_, _> = of_velocities(system, layout, angles).into_iter().collect();
         self.by_determined = vec![Vec::new(); rows.len()];
         let every = Embedding::identity(layout.n_tree_rates());
         let directions = Directions { layout, angles, embedding: &every };
         let definitions = counted_angles(system, layout, angles);
         for rate in layout.n_rates..layout.n_tree_rates() {
-            let direction = directions.of_rate(&mut system.graph, rate);
-            let mut derivative = Derivative::new(&definitions, direction);
-            let column: Vec<_> = rows.iter().map(|&row| derivative.of(&mut system.graph, row)).collect();
+            let column = directions.column(&mut system.graph, &definitions, (&rows, &phi, &own), rate);
             let held = all_held(system, layout);
             let column = system.expanded(&held, &column);
             self.by_determined.iter_mut().zip(column).for_each(|(row, entry)| row.push(entry));
@@ -203,6 +221,24 @@ pub struct Directions<'a> {
 }
 
 impl Directions<'_> {
+    /// The derivatives of some rows by a rate: by where it leads, or of rows of velocities by itself.
+    fn column(
+        &self,
+        graph: &mut Graph,
+        definitions: &Definitions,
+        (rows, phi, own): (&[usize], &[ExprId], &BTreeMap<usize, ExprId>),
+        rate: usize,
+    ) -> Vec<ExprId> {
+        let (led, alone) = (self.of_rate(graph, rate), self.of_rate_alone(graph, rate));
+        let mut by_place = Derivative::new(definitions, led);
+        let mut by_rate = Derivative::new(definitions, alone);
+        let of = |(row, &phi): (&usize, &ExprId)| match own.get(row) {
+            Some(&own) => by_rate.of(graph, own),
+            None => by_place.of(graph, phi),
+        };
+        rows.iter().zip(phi).map(of).collect()
+    }
+
     /// One rate of the state is one, all others are zero, and time stands still.
     fn of_rate(&self, graph: &mut Graph, rate: usize) -> Direction {
         let by_rate = self.by_rate(graph, rate);

@@ -44,8 +44,8 @@ pub fn determined(
                     is_open(coordinate).then_some(Determined { coordinate, by: Relation::Driver(driver) })
                 }
                 RowOwner::Coupler(coupler) => {
-                    // A formula is a row that closes loops.
-                    let second = model.couplers[coupler].second;
+                    // A formula is a row that closes loops, or one of velocities.
+                    let second = model.couplers[coupler].second?;
                     let (first, ratio, _) = model.couplers[coupler].linear()?;
                     let is_tree = is_on_tree(first) && is_on_tree(second);
                     let is_new = root(&found, first) != root(&found, second);

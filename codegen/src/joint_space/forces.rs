@@ -12,9 +12,9 @@ use gyro_model::{Attachment, JointCoordinate, JointKind};
 
 /// Joint coordinates and rates as they are; those of joints that close loops in terms of angles of the tree, or else of
 /// maximal coordinates.
-struct OfJoints<'a> {
-    layout: &'a Layout,
-    angles: &'a WholeAngles,
+pub struct OfJoints<'a> {
+    pub layout: &'a Layout,
+    pub angles: &'a WholeAngles,
 }
 
 impl OfJoints<'_> {

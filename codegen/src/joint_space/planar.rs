@@ -53,7 +53,11 @@ pub fn accelerations(system: &mut System, coordinates: &Coordinates) -> Option<V
     let is_unloaded = |load: &SpatialVector| load.t == ZERO3 && load.rho == ZERO3;
     let has_armature = coordinates.armature.iter().any(|&inertia| inertia != Graph::ZERO)
         || !coordinates.cut_armatures.is_empty();
-    if coordinates.closure.rows.is_empty() || has_armature || !coordinates.loads.iter().all(is_unloaded) {
+    if coordinates.closure.rows.is_empty()
+        || coordinates.closure.n_of_velocities > 0
+        || has_armature
+        || !coordinates.loads.iter().all(is_unloaded)
+    {
         return None;
     }
     let planar = Planar::of(system, coordinates)?;

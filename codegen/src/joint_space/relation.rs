@@ -38,7 +38,7 @@ impl Relation {
         match self {
             Self::Driver(_) | Self::Held(_) => None,
             Self::Forward(coupler) => Some(linear(model, coupler).0),
-            Self::Backward(coupler) => Some(model.couplers[coupler].second),
+            Self::Backward(coupler) => model.couplers[coupler].second,
         }
     }
 }

@@ -14,7 +14,7 @@ pub struct Description<'a> {
     pub bodies: &'a [&'a str],
     /// Names and coordinates of the joints.
     pub joints: &'a [JointInfo<'a>],
-    /// Names of the couplers of two joint coordinates.
+    /// Names of the couplers of joint coordinates, then of constraints.
     pub couplers: &'a [&'a str],
     /// Names of the drivers of joint coordinates.
     pub drivers: &'a [&'a str],
@@ -109,7 +109,7 @@ pub enum Owner {
     Body(u16),
     /// A joint, by its index.
     Joint(u16),
-    /// A coupler of two joint coordinates, by its index.
+    /// A coupler of joint coordinates or a constraint, by its index.
     Coupler(u16),
     /// A driver of a joint coordinate, by its index.
     Driver(u16),

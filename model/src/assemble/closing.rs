@@ -7,7 +7,7 @@ use super::velocity::velocities;
 use super::walk::{State, Walk, check_finite, relative, roots};
 use super::{JointStart, Move, Start, branch, side};
 use crate::kinematics::{Equation, Kinematics};
-use crate::{JointCoordinate, JointKind, Model, Quaternion, RowOwner, Tree, Vector};
+use crate::{JointCoordinate, JointKind, Model, Quaternion, Row, RowOwner, Tree, Vector};
 
 /// Starts that are tried around a guess from which the mechanism does not close: a guess may be so symmetric that no
 /// step leads away from it.
@@ -108,7 +108,7 @@ struct Closing<'a> {
 impl Closing<'_> {
     /// The closed configuration nearest to the guess, with the coordinates held that the model file holds.
     fn positions(&self, guesses: &[Guess], guess: &Configuration) -> Result<Configuration, AssemblyError> {
-        let rows = self.kinematics.equations();
+        let rows = self.kinematics.of_positions();
         let held = held(guesses);
         let all = System::new(self.kinematics, [&rows[..], &held].concat(), self.scales);
         let free = System::new(self.kinematics, rows, self.scales);
@@ -162,9 +162,11 @@ impl Closing<'_> {
 
     /// Names the row that remains violated most.
     fn impossible(&self, system: &System<'_>, at: &Configuration) -> AssemblyError {
-        let (scaled, phi) = (system.residual(at), self.kinematics.phi(&at.q, &at.near));
+        let equations = self.kinematics.of_positions();
+        let (scaled, phi) = (system.residual(at), self.kinematics.values(&equations, &at.q, &at.near));
         let worst = scaled.iamax();
-        let row = self.kinematics.rows()[worst];
+        let is_there = |row: &&Row| equations.contains(&Equation::Rows(row.owner));
+        let row = *self.kinematics.rows().iter().filter(is_there).nth(worst).expect("rows of the equations");
         AssemblyError::Impossible {
             owner: row.owner,
             name: self.model.named(row.owner),

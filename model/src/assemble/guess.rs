@@ -109,19 +109,22 @@ fn next_coupled(model: &Model, guesses: &[Guess]) -> Option<(JointCoordinate, f6
     let follow = |coupler: &crate::Coupler| {
         let (first, ratio, offset) = match &coupler.by {
             Coupling::Linear { first, ratio, offset } => (*first, model.value(ratio), model.value(offset)),
-            Coupling::Formula(formula) => {
-                let is_known = formula.uses().all(|(on, _)| known(on)) && !known(coupler.second);
-                return is_known.then(|| (coupler.second, Sight::new(model, formula).value(at, 0.0)));
+            by => {
+                let (formula, second) = (by.formula()?, coupler.second?);
+                let is_known = formula.uses().all(|(on, _)| known(on)) && !known(second);
+                return is_known.then(|| (second, Sight::new(model, formula).value(at, 0.0)));
             }
         };
-        match (known(first), known(coupler.second)) {
-            (true, false) => Some((coupler.second, ratio * at(first) + offset)),
-            (false, true) if ratio != 0.0 => Some((first, (at(coupler.second) - offset) / ratio)),
+        let second = coupler.second?;
+        match (known(first), known(second)) {
+            (true, false) => Some((second, ratio * at(first) + offset)),
+            (false, true) if ratio != 0.0 => Some((first, (at(second) - offset) / ratio)),
             _ => None,
         }
     };
     let seed = || {
-        let mut coordinates = model.couplers.iter().flat_map(|coupler| coupler.coordinates());
+        let followed = model.couplers.iter().filter(|coupler| coupler.second.is_some());
+        let mut coordinates = followed.flat_map(|coupler| coupler.coordinates());
         coordinates.find(|on| !known(*on)).map(|on| (on, 0.0))
     };
     model.couplers.iter().find_map(follow).or_else(seed)

@@ -136,7 +136,7 @@ impl Model {
         let (kind, name) = match owner {
             RowOwner::Body(body) => ("body", &self.bodies[body].name),
             RowOwner::Joint(joint) => ("joint", &self.joints[joint].name),
-            RowOwner::Coupler(coupler) => ("coupler", &self.couplers[coupler].name),
+            RowOwner::Coupler(coupler) => (self.couplers[coupler].word(), &self.couplers[coupler].name),
             RowOwner::Driver(driver) => ("driver", &self.drivers[driver].name),
         };
         format!("{kind} `{name}`")

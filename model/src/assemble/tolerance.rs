@@ -2,7 +2,7 @@
 
 use super::Start;
 use crate::kinematics::{Equation, Kinematics};
-use crate::{Model, Row, RowOwner, RowUnit};
+use crate::{Coupling, Model, Row, RowOwner, RowUnit};
 
 /// A row of Φ, or of Φ_q q̇ − ν, of a start is met if it is this part or less of what it adds up: far above the
 /// rounding of an assembly in `f64`, which goes on until it gains no more digits, far below any number that one writes
@@ -51,7 +51,12 @@ impl Model {
     fn row_symbols(&self, owner: RowOwner) -> Vec<&'static str> {
         match owner {
             RowOwner::Body(_) => vec!["r x", "r y", "r z", "p x", "p y", "p z"],
-            RowOwner::Coupler(_) => vec!["second - ratio * first - offset"],
+            RowOwner::Coupler(coupler) => vec![match &self.couplers[coupler].by {
+                Coupling::Linear { .. } => "second - ratio * first - offset",
+                Coupling::Formula(_) => "second - formula",
+                Coupling::Zero(_) => "zero",
+                Coupling::Rate(_) => "rate",
+            }],
             RowOwner::Driver(_) => vec!["coordinate - motion"],
             RowOwner::Joint(index) => self.joints[index].kind.row_symbols(self.point_axes(index)),
         }

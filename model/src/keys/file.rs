@@ -1,8 +1,8 @@
 //! The whole file, how it is run, and motions.
 
 use super::{
-    BODY, CONTACT, CONTROLLER, COUPLER, CURVE, DRIVER, ELEMENT, EVENT, FORCE, FORMULA, JOINT, Key, OUTPUT,
-    STATE, Table, Value, flag, name, number, plain, table, tables, text, vector, word,
+    BODY, CONSTRAINT, CONTACT, CONTROLLER, COUPLER, CURVE, DRIVER, ELEMENT, EVENT, FORCE, FORMULA, JOINT,
+    Key, OUTPUT, STATE, Table, Value, flag, name, number, plain, table, tables, text, vector, word,
 };
 
 /// The whole model file.
@@ -47,6 +47,7 @@ pub static FILE: Table = Table::new(
             .or("at least one that moves"),
         tables(&JOINT, "one `[[joint]]` a joint"),
         tables(&COUPLER, "one `[[coupler]]` a gear, belt or other coupling of two joint coordinates"),
+        tables(&CONSTRAINT, "one `[[constraint]]` a row of one's own among joint coordinates or their rates"),
         tables(&DRIVER, "one `[[driver]]` a joint coordinate that is prescribed in time"),
         tables(
             &FORCE,

@@ -147,6 +147,20 @@ pub static COUPLER: Table = Table::new(
 pub static COUPLER_END: Table =
     Table::new("joint coordinate", "A coordinate of a joint.", &[ON_JOINT, ON_COORDINATE]);
 
+/// `[[constraint]]`.
+pub static CONSTRAINT: Table = Table::new(
+    "constraint",
+    "A row of one's own: a formula of joint coordinates that is zero, or one that is linear in their rates.",
+    &[
+        name("name"),
+        text("zero", "what is to be zero: a [formula](laws.md) of joint coordinates")
+            .eg("zero = \"...\", or rate = \"...\"")
+            .or("required but with `rate`"),
+        text("rate", "what is to be zero: a [formula](laws.md) of joint coordinates, linear in their rates")
+            .or("none"),
+    ],
+);
+
 /// `[[driver]]`.
 pub static DRIVER: Table = Table::new(
     "driver",

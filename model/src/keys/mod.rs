@@ -16,7 +16,7 @@ pub use elements::ELEMENT;
 pub(crate) use elements::lacking;
 pub use file::{ATTRACTION, FILE, GENERATE, INPUT, MOTION, SIMULATION, SINUSOID};
 pub use forces::{BUSHING_END, FORCE, FORCE_END};
-pub use joints::{COUPLER, COUPLER_END, DRIVER, JOINT, JOINT_END};
+pub use joints::{CONSTRAINT, COUPLER, COUPLER_END, DRIVER, JOINT, JOINT_END};
 pub use observed::{CONTACT, CONTROLLER, CURVE, EVENT, FORMULA, OUTPUT, STATE};
 
 /// A table of the model file.

@@ -47,6 +47,11 @@ pub static OUTPUT: Table = Table::new(
         "torque or force of the coupler along its second coordinate (N·m or N), see below",
         &[reference("coupler", "")],
     ),
+    kind(
+        "constraint",
+        "what the constraint acts with: its power is this times the rate of its formula, see below",
+        &[reference("constraint", "")],
+    ),
     kind("spring", "torque or force of the spring (N·m or N), and its deflection (rad or m)", FORCE),
     kind("link", "force with which the link pushes its ends apart (N), its length (m), and the rate of that (m/s)", FORCE),
     kind(

@@ -19,7 +19,7 @@ use num_dual::Dual64;
 
 use crate::scalar::Scalar;
 use crate::sight::Sight;
-use crate::{CoordinateKind, Coupling, JointCoordinate, Model, Quaternion, Row, RowOwner, Support};
+use crate::{CoordinateKind, Coupling, JointCoordinate, Model, Quaternion, Row, RowOwner, Seen, Support};
 
 /// Φ, its derivatives and the joints' coordinates of a model at one instant.
 ///
@@ -75,15 +75,16 @@ enum Place {
 
 #[derive(Clone, Debug)]
 struct CouplerNumbers {
-    second: JointCoordinate,
+    second: Option<JointCoordinate>,
     by: Numbers,
 }
 
-/// What a coupler's second coordinate is to be.
+/// What a coupler's second coordinate is to be, or what a constraint has to be zero.
 #[derive(Clone, Debug)]
 enum Numbers {
     Linear { first: JointCoordinate, ratio: f64, offset: f64 },
     Formula(Sight),
+    Rate(Sight),
 }
 
 /// A driver's prescribed value with its derivative in time.
@@ -171,6 +172,16 @@ impl Kinematics {
         owners.into_iter().map(Equation::Rows).collect()
     }
 
+    /// Those that say where bodies may be: all but rows of velocities.
+    pub(crate) fn of_positions(&self) -> Vec<Equation> {
+        let mut equations = self.equations();
+        equations.retain(|equation| match equation {
+            Equation::Rows(RowOwner::Coupler(k)) => !matches!(self.couplers[*k].by, Numbers::Rate(_)),
+            _ => true,
+        });
+        equations
+    }
+
     pub(crate) fn joints(&self) -> &[JointGeometry] {
         &self.joints
     }
@@ -198,26 +209,40 @@ impl CouplerNumbers {
             Coupling::Linear { first, ratio, offset } => {
                 Numbers::Linear { first: *first, ratio: model.value(ratio), offset: model.value(offset) }
             }
-            Coupling::Formula(formula) => Numbers::Formula(Sight::new(model, formula)),
+            Coupling::Formula(formula) | Coupling::Zero(formula) => {
+                Numbers::Formula(Sight::new(model, formula))
+            }
+            Coupling::Rate(formula) => Numbers::Rate(Sight::new(model, formula)),
         };
         Self { second: coupler.second, by }
     }
 
-    /// The second coordinate less what it is to be.
+    /// The second coordinate less what it is to be, or what is to be zero; of a row of velocities what changes at the
+    /// rate of the formula, which is zero now.
     fn lag<D: Scalar>(&self, coordinate: impl Fn(JointCoordinate) -> D) -> D {
-        let second = coordinate(self.second);
+        let second = self.second.map(&coordinate);
         match &self.by {
-            Numbers::Linear { first, ratio, offset } => second - coordinate(*first) * *ratio - *offset,
-            Numbers::Formula(formula) => second - formula.value(coordinate, D::zero()),
+            Numbers::Linear { first, ratio, offset } => {
+                second.unwrap_or_else(D::zero) - coordinate(*first) * *ratio - *offset
+            }
+            Numbers::Formula(formula) => {
+                let value = formula.value(&coordinate, D::zero());
+                second.map_or(value, |second| second - value)
+            }
+            Numbers::Rate(formula) => D::growing(formula.of(|seen| match seen {
+                Seen::Coordinate(on) => coordinate(on).re(),
+                Seen::Rate(on) => coordinate(on).rate(),
+                _ => 0.0,
+            })),
         }
     }
 
     /// All coordinates of its row.
     fn coordinates(&self) -> Vec<JointCoordinate> {
-        let mut all = vec![self.second];
+        let mut all: Vec<_> = self.second.into_iter().collect();
         match &self.by {
             Numbers::Linear { first, .. } => all.push(*first),
-            Numbers::Formula(formula) => all.extend(formula.coordinates()),
+            Numbers::Formula(formula) | Numbers::Rate(formula) => all.extend(formula.coordinates()),
         }
         all
     }

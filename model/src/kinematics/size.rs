@@ -34,8 +34,9 @@ impl Kinematics {
                     Numbers::Formula(formula) => {
                         formula.value(|of: JointCoordinate| near[of.joint][of.coordinate], 0.0).abs()
                     }
+                    Numbers::Rate(_) => 0.0,
                 };
-                (0, coordinate(coupler.second) + wanted)
+                (0, coupler.second.map_or(0.0, coordinate) + wanted)
             }
             Equation::Rows(RowOwner::Driver(k)) => (0, 2.0 * self.drivers[k].value.re.abs()),
             Equation::Rows(RowOwner::Joint(joint)) if self.joints[joint].kind == JointKind::Screw => {

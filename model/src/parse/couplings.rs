@@ -7,7 +7,7 @@ use super::reader::Reader;
 use super::section::Section;
 use super::{curves, motion, references, seen, tables};
 use crate::validate::{Owner, Side};
-use crate::{Coupler, Coupling, Driver, Formula, JointCoordinate, Seen};
+use crate::{Coupler, Coupling, Driver, Formula, JointCoordinate, Operation, Seen};
 
 /// Reads all couplers.
 pub(super) fn couplers(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Coupler> {
@@ -20,16 +20,92 @@ pub(super) fn couplers(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Coupl
         };
         let second = end(Side::Second);
         if section.has("formula") {
-            return Coupler { name, second, by: by_formula(reader, &section, second) };
+            return Coupler { name, second: Some(second), by: by_formula(reader, &section, second) };
         }
         let first = end(Side::First);
         // With a formula neither may be there.
         section.require(reader, "first");
         section.require(reader, "ratio");
         let [ratio, offset] = ["ratio", "offset"].map(|key| section.number(reader, key));
-        Coupler { name, second, by: Coupling::Linear { first, ratio, offset } }
+        Coupler { name, second: Some(second), by: Coupling::Linear { first, ratio, offset } }
     };
-    sections.map(one).collect()
+    let mut couplers: Vec<_> = sections.map(one).collect();
+    let before = couplers.len();
+    let own = tables::each(reader, page, "constraint", |index| Owner::Coupler(before + index));
+    couplers.extend(own.into_iter().map(|(section, name)| constraint(reader, &section, name)));
+    couplers
+}
+
+/// A row of one's own.
+fn constraint(reader: &mut Reader<'_>, section: &Section<'_>, name: String) -> Coupler {
+    let is_rate = section.has("rate");
+    if is_rate {
+        let message = format!("{} has `zero` and `rate`", section.title);
+        section.refuse(reader, "zero", &message, "remove one: a constraint is one row");
+    } else {
+        section.require(reader, "zero");
+    }
+    let refuse = |name: &str, seen: Seen| match seen {
+        Seen::Coordinate(_) => None,
+        Seen::Rate(_) if is_rate => None,
+        Seen::Rate(_) => Some([
+            format!("a constraint of positions cannot depend on `{name}`"),
+            "a rate".to_owned(),
+            "write rate = \"...\" for a constraint of velocities".to_owned(),
+        ]),
+        _ => Some([
+            format!("a constraint cannot depend on `{name}`"),
+            "not of a joint coordinate".to_owned(),
+            "write a formula of joint coordinates, their rates and parameters".to_owned(),
+        ]),
+    };
+    let formula = of_coordinates(reader, section, if is_rate { "rate" } else { "zero" }, &refuse);
+    if let Some((item, text)) = section.get("rate").and_then(|item| Some((item, item.text(reader)?)))
+        && let Err(words) = linear_in_rates(&formula)
+        && formula.sees().next().is_some()
+    {
+        let words = [format!("`{text}` {}", words[0]), words[1].to_owned(), words[2].to_owned()];
+        item.wrong(reader, words);
+    }
+    let by = if is_rate { Coupling::Rate(formula) } else { Coupling::Zero(formula) };
+    Coupler { name, second: None, by }
+}
+
+/// Whether a formula is a sum of products with one rate each; what is wrong, where, and what to write.
+fn linear_in_rates(formula: &Formula) -> Result<(), [&'static str; 3]> {
+    const POWERS: [&str; 3] = [
+        "is not linear in rates",
+        "a product, quotient, power or function of rates",
+        "write a sum of rates, each times a formula of joint coordinates",
+    ];
+    const WITHOUT: [&str; 3] = [
+        "has terms without a rate",
+        "not every term has a rate",
+        "write a sum of rates, each times a formula of joint coordinates; a [[driver]] prescribes a motion",
+    ];
+    // Of each operation how often rates are multiplied; of zero it may be any.
+    let degree = formula.value(|operation, degrees: &[Option<u8>]| {
+        let all_without = |all: &[usize]| all.iter().all(|a| degrees[*a].is_none_or(|degree| degree == 0));
+        match *operation {
+            Operation::Number(ref number) => Ok((!number.is_zero()).then_some(0)),
+            Operation::Seen(seen) => Ok(Some(u8::from(matches!(seen, Seen::Rate(_))))),
+            Operation::Negative(a) => Ok(degrees[a]),
+            Operation::Sum(a, b) | Operation::Difference(a, b) => match (degrees[a], degrees[b]) {
+                (Some(a), Some(b)) if a != b => Err(WITHOUT),
+                (a, b) => Ok(a.or(b)),
+            },
+            Operation::Product(a, b) => match (degrees[a], degrees[b]) {
+                (Some(1), Some(1)) => Err(POWERS),
+                (Some(a), Some(b)) => Ok(Some(a + b)),
+                _ => Ok(None),
+            },
+            Operation::Quotient(a, b) if all_without(&[b]) => Ok(degrees[a]),
+            Operation::Power(a, _) if all_without(&[a]) => Ok(Some(0)),
+            Operation::Call(_, operands) if all_without(&operands) => Ok(Some(0)),
+            Operation::Quotient(..) | Operation::Power(..) | Operation::Call(..) => Err(POWERS),
+        }
+    })?;
+    if degree == Some(1) { Ok(()) } else { Err(WITHOUT) }
 }
 
 fn by_formula(reader: &mut Reader<'_>, section: &Section<'_>, second: JointCoordinate) -> Coupling {
@@ -37,9 +113,6 @@ fn by_formula(reader: &mut Reader<'_>, section: &Section<'_>, second: JointCoord
         let message = format!("{} has a `formula` and `{key}`", section.title);
         section.refuse(reader, key, &message, "remove it: the formula says all of it");
     }
-    let item = section.find(reader, "formula");
-    let text = item.and_then(|item| Some((item, item.text(reader)?)));
-    let known = seen::known(reader, &[]);
     let refuse = |name: &str, seen: Seen| {
         let words = match seen {
             Seen::Coordinate(on) if on == second => [
@@ -56,13 +129,27 @@ fn by_formula(reader: &mut Reader<'_>, section: &Section<'_>, second: JointCoord
         let help = "write a formula of other joint coordinates and of parameters: a [[driver]] moves in time";
         Some([message, label, help.to_owned()])
     };
+    Coupling::Formula(of_coordinates(reader, section, "formula", &refuse))
+}
+
+/// The formula of a row.
+fn of_coordinates(
+    reader: &mut Reader<'_>,
+    section: &Section<'_>,
+    key: &'static str,
+    refuse: &dyn Fn(&str, Seen) -> Option<[String; 3]>,
+) -> Formula {
+    let item = section.find(reader, key);
+    let text = item.and_then(|item| Some((item, item.text(reader)?)));
+    let known = seen::known(reader, &[]);
     let formula = text.and_then(|(item, text)| {
-        let read = laws::with_names(reader, &known, Inputs::Unknown, &refuse, |named| named.varying(text));
+        let read = laws::with_names(reader, &known, Inputs::Unknown, refuse, |named| named.varying(text));
         read.map_err(|fault| wrong_within(reader, item, text, fault)).ok()
     });
     let formula = formula.unwrap_or_else(Formula::zero);
     if let Some((item, _)) = text {
-        curves::refuse_kinks(reader, item, &formula, "a coupler");
+        let what = if key == "formula" { "a coupler" } else { "a constraint" };
+        curves::refuse_kinks(reader, item, &formula, what);
     }
     let (found, most) = (formula.uses().count(), Coupler::MOST - 1);
     if let Some((item, _)) = text.filter(|_| found > most) {
@@ -70,7 +157,7 @@ fn by_formula(reader: &mut Reader<'_>, section: &Section<'_>, second: JointCoord
         let help = format!("write one of at most {most}");
         item.wrong(reader, [message, "too many".to_owned(), help]);
     }
-    Coupling::Formula(formula)
+    formula
 }
 
 /// Reads all drivers.

@@ -55,6 +55,10 @@ fn output(reader: &mut Reader<'_>, section: &Section<'_>, kind: &str) -> OutputK
         "reaction" => OutputKind::Reaction { joint: index("joint") },
         "driver" => OutputKind::Driver { driver: index("driver") },
         "coupler" => OutputKind::Coupler { coupler: index("coupler") },
+        "constraint" => {
+            let own = index("constraint");
+            OutputKind::Coupler { coupler: reader.named("coupler").len() + own }
+        }
         "spring" => OutputKind::Spring { force: index("force") },
         "link" => OutputKind::Link { force: index("force") },
         "bushing" => OutputKind::Bushing { force: index("force") },

@@ -28,7 +28,7 @@ pub(super) fn each<'t>(
     reader: &mut Reader<'_>,
     page: &Section<'t>,
     what: &'static str,
-    owner: fn(usize) -> Owner,
+    owner: impl Fn(usize) -> Owner + Copy,
 ) -> Vec<(Section<'t>, String)> {
     let item = page.find(reader, what);
     let Some(Item { key: &Key { value: Value::Tables(keys), .. }, .. }) = item else { return Vec::new() };
@@ -59,7 +59,7 @@ pub(super) fn each<'t>(
 fn names(
     reader: &mut Reader<'_>,
     tables: &[(Item<'_>, &DeTable<'_>)],
-    owner: fn(usize) -> Owner,
+    owner: impl Fn(usize) -> Owner,
     keys: &'static Table,
 ) -> Vec<Option<String>> {
     let what = keys.name;

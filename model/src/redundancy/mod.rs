@@ -158,10 +158,10 @@ fn configuration(kinematics: &Kinematics, start: &Start) -> Configuration {
     Configuration { near: kinematics.coordinates(&start.q, &near), q: start.q.clone() }
 }
 
-/// All rows but the drivers'.
+/// All rows of positions but the drivers'.
 fn undriven(kinematics: &Kinematics) -> Vec<Equation> {
     let is_driver = |equation: &Equation| matches!(equation, Equation::Rows(RowOwner::Driver(_)));
-    kinematics.equations().into_iter().filter(|equation| !is_driver(equation)).collect()
+    kinematics.of_positions().into_iter().filter(|equation| !is_driver(equation)).collect()
 }
 
 /// The rows of each owner that is not of the trees, in the order in which they are preferred.

@@ -12,11 +12,11 @@ pub(crate) fn problems(model: &Model) -> Vec<Problem> {
             continue;
         }
         // Formulas may close circles, as loops of joints do.
-        let Some((first, ..)) = coupler.linear() else { continue };
-        if first == coupler.second {
+        let (Some((first, ..)), Some(second)) = (coupler.linear(), coupler.second) else { continue };
+        if first == second {
             found.push(with_itself(model, index, first));
-        } else if !groups.join(first, coupler.second, index) {
-            found.push(cycle(model, &groups, index, first));
+        } else if !groups.join(first, second, index) {
+            found.push(cycle(model, &groups, index, [first, second]));
         }
     }
     found.extend(contradicting_drivers(model, &mut groups));
@@ -84,10 +84,10 @@ fn with_itself(model: &Model, index: usize, first: JointCoordinate) -> Problem {
     .also(place(Side::First), "the first coordinate")
 }
 
-fn cycle(model: &Model, groups: &Groups, index: usize, first: JointCoordinate) -> Problem {
+fn cycle(model: &Model, groups: &Groups, index: usize, [first, second]: [JointCoordinate; 2]) -> Problem {
     let coupler = &model.couplers[index];
     let path = groups.reached(first);
-    let last = path.iter().find(|(c, _)| *c == coupler.second).and_then(|(_, coupler)| *coupler);
+    let last = path.iter().find(|(c, _)| *c == second).and_then(|(_, coupler)| *coupler);
     let also = last.map(|other| {
         (Place { owner: Owner::Coupler(other), key: "" }, "couples the second one already".to_owned())
     });
@@ -95,7 +95,7 @@ fn cycle(model: &Model, groups: &Groups, index: usize, first: JointCoordinate) -
         place: Place { owner: Owner::Coupler(index), key: "" },
         also,
         message: format!("coupler `{}` closes a cycle of couplers", coupler.name),
-        label: format!("{} and {} are coupled without it", shown(model, first), shown(model, coupler.second)),
+        label: format!("{} and {} are coupled without it", shown(model, first), shown(model, second)),
         help: "remove a coupler of the cycle: with it the coordinates would be coupled twice".to_owned(),
     }
 }

@@ -75,7 +75,7 @@ impl<'m> Ranged<'m> {
     }
 
     pub(super) fn of_coupler(index: usize, coupler: &'m Coupler) -> Self {
-        let title = format!("coupler `{}`", coupler.name);
+        let title = format!("{} `{}`", coupler.word(), coupler.name);
         let ratio = coupler.linear().map(|(_, ratio, _)| ("ratio", ratio));
         Self::new((Owner::Coupler(index), title), COUPLER.keys, ratio)
     }

@@ -342,7 +342,7 @@ fn gear(name: &str, first: usize, second: usize, ratio: f64, offset: f64) -> Cou
     let of = |joint| JointCoordinate { joint, coordinate: 0 };
     Coupler {
         name: name.to_owned(),
-        second: of(second),
+        second: Some(of(second)),
         by: Coupling::Linear { first: of(first), ratio: number(ratio), offset: number(offset) },
     }
 }

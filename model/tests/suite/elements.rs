@@ -155,7 +155,7 @@ joint = "thread"
     let gear = &model.couplers[0];
     let (first, ratio, offset) = gear.linear().expect("a gear");
     assert_eq!(first, JointCoordinate { joint: 0, coordinate: 1 });
-    assert_eq!(gear.second, JointCoordinate { joint: 1, coordinate: 0 });
+    assert_eq!(gear.second, Some(JointCoordinate { joint: 1, coordinate: 0 }));
     assert_eq!(model.coordinate_kind(first), CoordinateKind::Displacement);
     assert_eq!((model.value(ratio), model.value(offset)), (-3.0, 0.5));
     let ForceKind::Stop { side: StopSide::Lower, damping, limit, .. } = &model.forces[0].kind else {

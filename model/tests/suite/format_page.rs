@@ -25,7 +25,7 @@ fn read(text: &str) -> Result<Model, Diagnostics> {
 }
 
 /// All tables of keys that the document shows.
-const TABLES: [&Table; 20] = [
+const TABLES: [&Table; 21] = [
     &keys::FILE,
     &keys::ATTRACTION,
     &keys::SIMULATION,
@@ -35,6 +35,7 @@ const TABLES: [&Table; 20] = [
     &keys::JOINT,
     &keys::JOINT_END,
     &keys::COUPLER,
+    &keys::CONSTRAINT,
     &keys::DRIVER,
     &keys::MOTION,
     &keys::SINUSOID,

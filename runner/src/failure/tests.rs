@@ -30,7 +30,7 @@ fn errors_name_time_part_and_number() {
         ),
         (
             Error::NoConvergence { t: 0.5, violation: 3e-3, owner: Owner::Coupler(0) },
-            "at t = 0.5 s the constraints of coupler `gear` cannot be met: 3e-3 remains",
+            "at t = 0.5 s the constraints of coupler or constraint `gear` cannot be met: 3e-3 remains",
         ),
     ] {
         let found = describe(&spinner, error);

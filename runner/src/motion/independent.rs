@@ -52,12 +52,13 @@ where
     });
     let places = || tangent.independent.iter().map(|&k| &tangent.rates[k]);
     let positions = places().map(|rate| rate.position_at.map_or(0.0, |at| linear.state[at]));
-    let rates = tangent.independent.iter().map(|&k| linear.state[tangent.n_coordinates + k]);
+    let moving = || tangent.independent_rates.iter().map(|&k| &tangent.rates[k]);
+    let rates = tangent.independent_rates.iter().map(|&k| linear.state[tangent.n_coordinates + k]);
     let states = tangent.states.iter().map(|&at| linear.state[at]);
     let own = tangent.states.iter().map(|&at| linear.elements[at]);
     Linear {
         t: linear.t,
-        elements: places().map(Rate::element).chain(places().map(Rate::element_of_rate)).chain(own).collect(),
+        elements: places().map(Rate::element).chain(moving().map(Rate::element_of_rate)).chain(own).collect(),
         state: positions.chain(rates).chain(states).collect(),
         slope: tangent.kept(&linear.slope),
         by_state: rows(&by_state.collect::<Vec<_>>()),
@@ -132,18 +133,30 @@ fn is_angle(description: &Description<'_>, place: JointPlace) -> bool {
         == Some(&Coordinate::Angle)
 }
 
-/// How a state can change on the closure: x by `T N δq`, u by `W δq + N δq̇`, with q the independent coordinates. T has
-/// the derivatives of x by each rate, the columns of N span the null space of the closure's Jacobian, and W is how
-/// rates follow positions.
+/// How a state can change on the closure: x by `T N δq`, u by `W δq + R δq̇`, with q the independent coordinates and q̇
+/// the independent rates, which are fewer where rows of velocities hold. T has the derivatives of x by each rate, the
+/// columns of N span what closed positions leave free, those of R the null space of the closure's Jacobian, and W is
+/// how rates follow positions.
 struct Tangent {
     n_coordinates: usize,
     /// Where the model file's own states stand in x: they are independent of all that is closed.
     states: Vec<usize>,
     rates: Vec<Rate>,
-    /// Indices of the independent rates: N is one there and W zero.
+    /// Indices of the rates whose coordinates are independent: N is one there.
     independent: Vec<usize>,
     /// N above W, column by column.
     columns: Vec<Vec<f64>>,
+    /// Indices of the independent rates: R is one there and W zero.
+    independent_rates: Vec<usize>,
+    /// R, column by column.
+    columns_of_rates: Vec<Vec<f64>>,
+}
+
+/// What is changed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Changed {
+    Coordinates,
+    Rates,
 }
 
 impl Tangent {
@@ -161,25 +174,46 @@ impl Tangent {
             matches!(element, Some(Element::Position { place: JointPlace::State { .. }, .. }))
         };
         let states = (0..n_coordinates).filter(is_state).collect();
-        let tangent = Self { n_coordinates, states, rates, independent: Vec::new(), columns: Vec::new() };
-        let changes = tangent.closed(duals, linear.t, x).into_iter().zip(&tangent.rates);
-        let columns = changes.map(|(change, rate)| {
-            let rates = change[n_coordinates..].iter().take(tangent.rates.len()).copied();
-            tangent.along_rates(&change).into_iter().chain(rates).map(|part| part * rate.unit).collect()
+        let (independent, columns, independent_rates, columns_of_rates) = Default::default();
+        let mut tangent =
+            Self { n_coordinates, states, rates, independent, columns, independent_rates, columns_of_rates };
+        let [columns, of_rates] = [Changed::Coordinates, Changed::Rates].map(|changed| {
+            let changes = tangent.closed(duals, linear.t, x, changed).into_iter().zip(&tangent.rates);
+            let columns = changes.map(|(change, rate)| {
+                let rates = change[n_coordinates..].iter().take(tangent.rates.len()).copied();
+                let positions =
+                    if changed == Changed::Coordinates { tangent.along_rates(&change) } else { Vec::new() };
+                positions.into_iter().chain(rates).map(|part| part * rate.unit).collect::<Vec<_>>()
+            });
+            eliminate(columns.collect(), &tangent.rates)
         });
-        let (independent, columns) = eliminate(columns.collect(), &tangent.rates);
-        Self { independent, columns, ..tangent }
+        (tangent.independent, tangent.columns) = columns;
+        (tangent.independent_rates, tangent.columns_of_rates) = of_rates;
+        for column in &mut tangent.columns {
+            let following = &mut column[tangent.rates.len()..];
+            for (&row, motion) in tangent.independent_rates.iter().zip(&tangent.columns_of_rates) {
+                let share = following[row];
+                subtract(following, share, motion);
+            }
+        }
+        tangent
     }
 
-    /// The change of the closed state as the coordinate of each rate changes.
-    fn closed<T: Real, D>(&self, duals: &D, t: f64, x: &[T]) -> Vec<Vec<f64>>
+    /// The change of the closed state as each coordinate, or each rate, changes.
+    fn closed<T: Real, D>(&self, duals: &D, t: f64, x: &[T], changed: Changed) -> Vec<Vec<f64>>
     where
         D: Closing<Scalar = Dual<T, COLUMNS>>,
     {
         let mut changes = Vec::new();
-        for rates in self.rates.chunks(COLUMNS) {
+        let places: Vec<usize> = (0..self.rates.len()).collect();
+        for rates in places.chunks(COLUMNS) {
             let slopes = |k: usize| {
-                let of = |rate: &Rate| T::constant(rate.derivative.get(k).copied().unwrap_or(0.0));
+                let of = |&rate: &usize| {
+                    T::constant(match changed {
+                        Changed::Coordinates => self.rates[rate].derivative.get(k).copied().unwrap_or(0.0),
+                        Changed::Rates => f64::from(u8::from(k == self.n_coordinates + rate)),
+                    })
+                };
                 core::array::from_fn(|column| rates.get(column).map_or(T::constant(0.0), of))
             };
             let mut state: Vec<_> =
@@ -214,7 +248,7 @@ impl Tangent {
             directions.push([&direction, following].concat());
         }
         let at_rest = vec![0.0; self.n_coordinates];
-        directions.extend(self.columns.iter().map(|column| [&at_rest, &column[..n_rates]].concat()));
+        directions.extend(self.columns_of_rates.iter().map(|column| [&at_rest, &column[..]].concat()));
         directions.extend(self.states.iter().map(|&at| {
             let mut direction = vec![0.0; self.n_coordinates + n_rates];
             direction[at] = 1.0;
@@ -226,9 +260,10 @@ impl Tangent {
     /// What a change of (x, u) is in independent coordinates, rates and states.
     fn kept(&self, change: &[f64]) -> Vec<f64> {
         let (positions, rates) = (self.along_rates(change), &change[self.n_coordinates..]);
-        let of = |all: &[f64]| self.independent.iter().map(|&k| all[k]).collect::<Vec<_>>();
+        let positions: Vec<_> = self.independent.iter().map(|&k| positions[k]).collect();
+        let rates: Vec<_> = self.independent_rates.iter().map(|&k| rates[k]).collect();
         let states = self.states.iter().map(|&at| change[at]).collect();
-        [of(&positions), of(rates), states].concat()
+        [positions, rates, states].concat()
     }
 }
 
@@ -237,8 +272,7 @@ impl Tangent {
 const NOTHING: f64 = 1e-4;
 
 /// Chooses as many of the upper rows as are independent and combines the columns until they are one there: Gauss and
-/// Jordan with the largest pivot of all (Golub and Van Loan, *Matrix Computations*, section 3.4.8). The same rows of
-/// the lower half are then made zero.
+/// Jordan with the largest pivot of all (Golub and Van Loan, *Matrix Computations*, section 3.4.8).
 fn eliminate(mut columns: Vec<Vec<f64>>, rates: &[Rate]) -> (Vec<usize>, Vec<Vec<f64>>) {
     let mut chosen: Vec<(usize, Vec<f64>)> = Vec::new();
     loop {
@@ -259,16 +293,7 @@ fn eliminate(mut columns: Vec<Vec<f64>>, rates: &[Rate]) -> (Vec<usize>, Vec<Vec
         chosen.push((row, pivot));
     }
     chosen.sort_by_key(|(row, _)| *row);
-    let (independent, mut columns): (Vec<_>, Vec<_>) = chosen.into_iter().unzip();
-    let motions: Vec<Vec<f64>> = columns.iter().map(|column| column[..rates.len()].to_vec()).collect();
-    for column in &mut columns {
-        let following = &mut column[rates.len()..];
-        for (&row, motion) in independent.iter().zip(&motions) {
-            let share = following[row];
-            subtract(following, share, motion);
-        }
-    }
-    (independent, columns)
+    chosen.into_iter().unzip()
 }
 
 fn subtract(from: &mut [f64], share: f64, what: &[f64]) {

@@ -56,6 +56,7 @@ fn text(mut page: Page, seed: u64) -> String {
             page.close();
         }
     }
+    page.rollings(seed);
     let places = loops::places(&page.read());
     page.forces(&places);
     page.outputs();

@@ -2,7 +2,7 @@
 //! already is, so that a consistent start exists.
 
 use crate::closing::Closing;
-use crate::dice::value;
+use crate::dice::{Dice, value};
 use crate::page::{KINDS, Page};
 use crate::vector::Place;
 use gyro_model::{Kinematics, Model, Number, Support, to_f64};
@@ -52,6 +52,53 @@ impl Page {
         self.elements += &format!(
             "\n[[coupler]]\nname = \"c{name}\"\nfirst = {first}\nsecond = {second}\nratio = {ratio}\noffset = {offset}\n"
         );
+    }
+
+    /// Rows of velocities: a rate that nothing else prescribes follows others.
+    pub fn rollings(&mut self, seed: u64) {
+        let mut dice = Dice::new(seed.rotate_left(29));
+        for name in 0..dice.pick(&[0, 0, 0, 1, 1, 2]) {
+            let Some(own) = self.free_coordinate() else { return };
+            let root = self.joints[own.0].root;
+            if self.freedoms[&root] < 2 {
+                return;
+            }
+            let without = self.clone();
+            *self.freedoms_of(root) -= 1;
+            self.joints[own.0].taken.push(own.1);
+            self.joints[own.0].starts.retain(|(key, _)| !["rate", "rates"].contains(key));
+            let coordinates = self.coordinates();
+            let is_alone: Vec<_> =
+                self.joints.iter().map(|joint| joint.kind.coordinates.len() == 1).collect();
+            let shown = |(joint, coordinate): (usize, &str)| match is_alone[joint] {
+                true => format!("j{joint}"),
+                false => format!("j{joint}.{coordinate}"),
+            };
+            let mut text = format!("{} rate", shown(own));
+            for _ in 0..1 + dice.below(2) {
+                let [with, by] = [(); 2].map(|()| coordinates[dice.below(coordinates.len())]);
+                if with == own {
+                    continue;
+                }
+                let [with, by, factor] = [shown(with), shown(by), dice.number()];
+                text += &match dice.below(4) {
+                    0 => format!(" - {factor}*({with} rate)"),
+                    1 => format!(" + sin({by})*({with} rate)/2"),
+                    2 => format!(" - 0.3*cos({by})*({with} rate)"),
+                    _ => format!(" + ({with} rate)*0.2/(2 + {by}^2)"),
+                };
+            }
+            self.elements += &format!("\n[[constraint]]\nname = \"v{name}\"\nrate = \"{text}\"\n");
+            if dice.once_in(2) {
+                self.elements += &format!(
+                    "\n[[output]]\nname = \"of_v{name}\"\nkind = \"constraint\"\nconstraint = \"v{name}\"\n"
+                );
+            }
+            // A loop may move in fewer ways than its tree does.
+            if gyro_model::read_with("page.toml", &self.text(), &mut crate::load).is_err() {
+                *self = without;
+            }
+        }
     }
 
     /// A coordinate that nothing prescribes, if there is one and enough ways to move remain without it.

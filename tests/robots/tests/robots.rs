@@ -194,7 +194,7 @@ fn armatures<M: JointSpace<Scalar = f64>>(model: &Model, mechanism: &M) -> DMatr
         let Some((first, Number::Exact(ratio), _)) = coupler.linear() else {
             panic!("a ratio that is no parameter")
         };
-        turning[coupler.second.joint] = &turning[first.joint] * to_f64(ratio);
+        turning[coupler.second.expect("a coupler's").joint] = &turning[first.joint] * to_f64(ratio);
     }
     let joints = model.joints.iter().zip(&turning);
     joints.fold(DMatrix::zeros(n, n), |sum, (joint, turning)| {

@@ -36,7 +36,7 @@ const LINES: usize = 500;
 const STAGES: [(&str, &str); 5] = [
     (
         "model",
-        "scalar coordinate number attraction spatial lines spline curve sight motion frames state elements directions joint_kind shape keys kinematics tree \
+        "scalar coordinate number attraction spatial lines spline curve sight motion frames state coupler elements directions joint_kind shape keys kinematics tree \
          controller event contact sites validate assemble diagnostics numbers redundancy parse queries",
     ),
     (

@@ -59,10 +59,19 @@ impl<F: Field> Evaluation<'_, F> {
         for body in [frames.first.body, frames.second.body] {
             poses[body] = self.pose(body, Path::Motion);
         }
-        let (s, c) = frames.placed(&poses).sine_and_cosine(self.textbook.model.coordinate_kind(on));
-        let zero = &self.scope.zero.value;
+        Some(self.change(on, &poses)?.value)
+    }
+
+    /// How fast a coordinate changes along the poses' path, with how fast that changes.
+    pub(super) fn change(&self, on: JointCoordinate, poses: &[Pose<F>]) -> Option<Jet<F>> {
+        let (kind, zero) = (self.textbook.model.coordinate_kind(on), &self.scope.zero.value);
+        let placed = self.joints[on.joint].placed(poses);
+        if !kind.is_angle() {
+            return Some(placed.direction(kind).dot(&placed.d).derivative(zero));
+        }
+        let (s, c) = placed.sine_and_cosine(kind);
         let turned = &c * s.derivative(zero) - &s * c.derivative(zero);
-        Some((turned * (&s * &s + &c * &c).reciprocal()?).value)
+        Some(turned * (&s * &s + &c * &c).reciprocal()?)
     }
 
     /// The rate of a coordinate: of an angle from the bodies' own axes, of a displacement along u

@@ -7,8 +7,9 @@ use super::pose::{Path, Pose};
 use super::sparse::Sparse;
 use super::{Block, Evaluation};
 use crate::field::Field;
-use gyro_model::{Coupler, Coupling, Driver, JointCoordinate, JointKind, RowOwner, Seen};
+use gyro_model::{Coupler, Coupling, Driver, Formula, JointCoordinate, JointKind, RowOwner, Seen};
 use std::array::from_fn;
+use std::collections::BTreeMap;
 
 impl<F: Field> Evaluation<'_, F> {
     /// Φ: joint rows, then the normalisations of eq. (12).
@@ -31,7 +32,38 @@ impl<F: Field> Evaluation<'_, F> {
                 }
             }
         }
+        let model = self.textbook.model;
+        let of_velocities = |row: &usize| match model.rows()[*row].owner {
+            RowOwner::Coupler(coupler) => model.couplers[coupler].rate().is_some(),
+            _ => false,
+        };
+        let of_velocities: Vec<_> = (0..n_rows).filter(of_velocities).collect();
+        if !of_velocities.is_empty() {
+            let phi_pi = self.phi_pi()?;
+            for row in of_velocities {
+                matrix.rows[row] = self.by_coordinates(&phi_pi.rows[row]);
+            }
+        }
         Some(matrix)
+    }
+
+    /// A row of velocities by (r, p) in place of (r, π'): `w' = 2 p* ṗ`, eq. (14).
+    fn by_coordinates(&self, row: &BTreeMap<usize, F>) -> BTreeMap<usize, F> {
+        let mut all = BTreeMap::new();
+        for (moving_body, &body) in self.textbook.moving_bodies.iter().enumerate() {
+            let entry = |k: usize| row.get(&(6 * moving_body + k)).cloned();
+            all.extend((0..3).filter_map(|k| Some((7 * moving_body + k, entry(k)?))));
+            let conjugate = conjugate(&self.still[body].p);
+            for k in 0..4 {
+                let unit = from_fn(|j| if j == k { self.scope.one.clone() } else { self.scope.zero.clone() });
+                let [_, turn @ ..] = compose(&conjugate, &unit);
+                let parts = turn.iter().enumerate().filter_map(|(j, w)| Some(entry(3 + j)?.mul(&w.value)));
+                if let Some(half) = parts.reduce(|a, b| a.add(&b)).filter(|half| !half.is_zero()) {
+                    all.insert(7 * moving_body + 3 + k, half.add(&half));
+                }
+            }
+        }
+        all
     }
 
     /// (Φ_r, Φ_π'), `Φ_π' = ½ Φ_p Gᵀ`; columns (r, π') body after body.
@@ -145,18 +177,27 @@ impl<F: Field> Evaluation<'_, F> {
 
     /// `second − ratio · first − offset`, or the second coordinate less a formula of others.
     fn coupled(&self, coupler: &Coupler, poses: &[Pose<F>]) -> Option<Jet<F>> {
-        let second = self.coordinate(coupler.second, poses)?;
+        let zero = &self.scope.zero.value;
+        let value = |formula: &Formula| {
+            let see = |seen| match seen {
+                Seen::Coordinate(on) => self.coordinate(on, poses),
+                Seen::Rate(on) => self.change(on, poses),
+                _ => None,
+            };
+            formula::value(self.textbook.model, &self.scope, &see, &formula.text)
+        };
+        let second = coupler.second.map(|second| self.coordinate(second, poses));
         match &coupler.by {
             Coupling::Linear { first, ratio, offset } => {
                 let [ratio, offset] = [ratio, offset].map(|number| self.scope.number(number));
-                Some(second - ratio * self.coordinate(*first, poses)? - offset)
+                Some(second?? - ratio * self.coordinate(*first, poses)? - offset)
             }
-            Coupling::Formula(formula) => {
-                let see = |seen| match seen {
-                    Seen::Coordinate(on) => self.coordinate(on, poses),
-                    _ => None,
-                };
-                Some(second - formula::value(self.textbook.model, &self.scope, &see, &formula.text)?)
+            Coupling::Formula(formula) => Some(second?? - value(formula)?),
+            Coupling::Zero(formula) => value(formula),
+            // What changes at this rate, and is zero now.
+            Coupling::Rate(formula) => {
+                let Jet { value, rate, .. } = value(formula)?;
+                Some(Jet { value: zero.clone(), rate: (!value.is_zero()).then_some(value), second: rate })
             }
         }
     }
