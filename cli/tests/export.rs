@@ -125,7 +125,11 @@ fn difference_in_c(model: &Path, name: &str, folder: &Path) -> (f64, usize) {
         let kind =
             KINDS.iter().find_map(|&(kind, ending, count)| Some((key.strip_prefix(kind)?, ending, count)));
         let Some((owner, ending, count)) = kind else { continue };
-        let owner = owner.to_lowercase() + ending;
+        let owner = owner.to_lowercase();
+        // A joint of several coordinates has them before its name.
+        let part = owner.split_once('_').map(|(part, joint)| format!("{joint}.{part}{ending}"));
+        let part = part.filter(|part| titles.iter().any(|title| title.to_lowercase() == *part));
+        let owner = part.unwrap_or(owner + ending);
         let is_its = |title: &str| title.to_lowercase() == owner;
         let is_part =
             |title: &str| title.to_lowercase().strip_prefix(&owner).is_some_and(|rest| rest.starts_with('.'));
