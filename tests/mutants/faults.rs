@@ -351,6 +351,7 @@ const FAULTS: &[Fault] = &[
     fault("derive/kinematics.rs", "carried-sled", "nu[row] = «system.graph.neg(by_time)»;", "by_time"),
     fault("joint_space/closure.rs", "sled", "Some(&own) => «by_rate.of(graph, own)»,", "Graph::ZERO"),
     fault("joint_space/closure.rs", "sled", "«own.get(row).copied()».unwrap_or_else(|| derivative.of(graph, phi))", "None::<ExprId>"),
+    fault("joint_space/closure.rs", "cut-row", "«angle_rate(&mut system.graph, (sine, cosine), rates.into())»", "rates[0]"),
     // The last passes.
     fault("simplify/scales.rs", "pair", "let product = self.graph.mul(x, y);\n                self.with_factor(&«c.mul(&d)», product)", "c.clone()"),
     fault("simplify/scales.rs", "pair", "let (c, x) = self.known[a].clone();\n                («c.neg()», x)", "c"),

@@ -191,3 +191,44 @@ fn a_formula_that_is_zero_holds_a_bead_on_a_circle() {
         assert!(run["constraint_violation"].as_f64().unwrap() < 1e-12);
     }
 }
+
+/// Every joint of a spatial loop has coordinates that a row names: whichever is cut, all engines have its rate.
+#[test]
+fn a_row_names_the_rates_of_a_cut_joint() {
+    let end = |body: &str, point: &str| format!("{{ body = \"{body}\", point = {point} }}");
+    let slide = |name: &str, ends: [String; 2], axis: &str| {
+        let [first, second] = ends;
+        format!(
+            "[[joint]]\nname = \"{name}\"\nkind = \"cylindrical\"\naxis = {axis}\nzero = [1, 0, 0]\nfirst = {first}\n\
+             second = {second}\n"
+        )
+    };
+    let hooke = |name: &str, [first, second]: [&str; 2], y: f64| {
+        format!(
+            "[[joint]]\nname = \"{name}\"\nkind = \"universal\"\nfirst = {{ body = \"{first}\", point = [0.5, {y:?}, 0], \
+             axis = [0, 0, 1], zero = [0, 1, 0] }}\nsecond = {{ body = \"{second}\", point = [-0.5, 0, 0.1], \
+             axis = [0, 1, 0], zero = [0, 0, 1] }}\n"
+        )
+    };
+    let bodies = ["a", "b", "c", "d"]
+        .map(|name| format!("[[body]]\nname = \"{name}\"\nmass = 1\ninertia = [0.1, 0.2, 0.3]\n"));
+    let page = "format = 1\nname = \"cut\"\ngravity = [1, -9, 2]\n[[body]]\nname = \"ground\"\nfixed = true\n"
+        .to_owned()
+        + &bodies.concat()
+        + &slide("p", [end("ground", "[0.5, 0, 0]"), end("a", "[-0.5, 0, 0]")], "[0, 0, 1]")
+        + &hooke("q", ["a", "b"], 0.3)
+        + &hooke("r", ["b", "c"], -0.2)
+        + &hooke("t", ["c", "d"], 0.4)
+        + &slide("z", [end("d", "[0.5, 0, 0]"), end("ground", "[2.5, 0.7, 0.3]")], "[0, 1, 0]")
+        + "[[constraint]]\nname = \"turns\"\nrate = \"p.angle rate - 0.3*(q.first_angle rate) + 0.2*(r.second_angle rate) \
+           + 0.5*(z.angle rate) + 0.4*(t.first_angle rate) + 0.2*(r.first_angle rate)\"\n\
+           [[constraint]]\nname = \"slides\"\nrate = \"p.displacement rate - 0.4*(z.displacement rate) + 0.1*sin(t.second_angle)*\
+           (q.second_angle rate)\"\n";
+    let ends = RUNS.map(|options| run(&page, options, "0.1"));
+    for (found, options) in ends.iter().zip(RUNS) {
+        let expected = [("p", 0), ("q", 1), ("r", 0), ("z", 1)]
+            .map(|(joint, k)| (joint, "position", k, last(&ends[3], joint, "position", k)));
+        is_near(found, &expected, options);
+        assert_eq!(found["degrees_of_freedom"], 2);
+    }
+}

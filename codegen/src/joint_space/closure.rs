@@ -9,13 +9,15 @@ use super::whole_angles::WholeAngles;
 use crate::derive::constraints;
 use crate::derive::frames::sine_and_cosine;
 use crate::derive::in_time::in_time;
+use crate::derive::joint_coordinate;
+use crate::derive::laws::Readings;
 use crate::derive::system::System;
 use crate::expr::definitions::{Definitions, Expansion, Values};
-use crate::expr::differentiate::{Derivative, Direction};
+use crate::expr::differentiate::{Derivative, Direction, angle_rate};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use crate::simplify::normal_form::{normal_form, vanishes};
-use gyro_model::{Model, RowOwner};
+use gyro_model::{JointCoordinate, Model, RowOwner};
 use std::array::from_fn;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -60,10 +62,42 @@ pub fn rows(
     rows.into_iter().zip(phi).filter(|&(_, row)| !vanishes(graph, unit, row)).collect()
 }
 
+/// Joint coordinates and rates; the rate of one that a loop's joint has, and that is no sum of the tree's, is the
+/// derivative of where the bodies are.
+struct OfLoops<'a>(OfJoints<'a>);
+
+impl Readings for OfLoops<'_> {
+    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        self.0.value(system, on)
+    }
+
+    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId {
+        let OfJoints { layout, angles } = self.0;
+        if self.0.parts(on).is_some() {
+            return self.0.rate(system, on);
+        }
+        let (frames, kind) = (system.joints[on.joint], system.model.coordinate_kind(on));
+        let (poses, embedding) = (&angles.poses, Embedding::identity(layout.n_tree_rates()));
+        let motion = Directions { layout, angles, embedding: &embedding };
+        let motion = motion.of_motion(&mut system.graph, system.model);
+        let definitions = Definitions::default();
+        let mut derivative = Derivative::new(&definitions, motion);
+        if !kind.is_angle() {
+            let value = joint_coordinate::value(system, on);
+            let value = system.expanded(poses, &[value])[0];
+            return derivative.of(&mut system.graph, value);
+        }
+        let (sine, cosine) = sine_and_cosine(&mut system.graph, kind, &frames, &frames.relative);
+        let [sine, cosine] = [sine, cosine].map(|part| system.expanded(poses, &[part])[0]);
+        let rates = [sine, cosine].map(|part| derivative.of(&mut system.graph, part));
+        angle_rate(&mut system.graph, (sine, cosine), rates.into())
+    }
+}
+
 /// The rows of velocities in joint coordinates and rates.
 fn of_velocities(system: &mut System, layout: &Layout, angles: &WholeAngles) -> Vec<(usize, ExprId)> {
-    let (rows, own): (Vec<_>, Vec<_>) =
-        constraints::of_velocities(system, &OfJoints { layout, angles }).into_iter().unzip();
+    let readings = OfLoops(OfJoints { layout, angles });
+    let (rows, own): (Vec<_>, Vec<_>) = constraints::of_velocities(system, &readings).into_iter().unzip();
     let own = system.expanded(&angles.poses, &own);
     let held = all_held(system, layout);
     rows.into_iter().zip(system.expanded(&held, &own)).collect()

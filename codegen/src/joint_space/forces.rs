@@ -31,7 +31,7 @@ impl OfJoints<'_> {
 
     /// The rates along which a force on a coordinate acts, with whether it does so backwards; `None` if it acts on the
     /// bodies.
-    fn parts(&self, on: JointCoordinate) -> Option<Vec<(Place, bool)>> {
+    pub fn parts(&self, on: JointCoordinate) -> Option<Vec<(Place, bool)>> {
         match self.layout.scalar(on) {
             Some(scalar) => Some(vec![(scalar.place, false)]),
             None => self.angles.of_loop(on).map(|sum| sum.parts().to_vec()),

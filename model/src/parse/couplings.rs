@@ -151,7 +151,11 @@ fn of_coordinates(
         let what = if key == "formula" { "a coupler" } else { "a constraint" };
         curves::refuse_kinks(reader, item, &formula, what);
     }
-    let (found, most) = (formula.uses().count(), Coupler::MOST - 1);
+    let mut named: Vec<_> = formula.uses().map(|(on, _)| (on.joint, on.coordinate)).collect();
+    named.sort_unstable();
+    named.dedup();
+    // A coupler's row has its second coordinate, too.
+    let (found, most) = (named.len(), Coupler::MOST - usize::from(key == "formula"));
     if let Some((item, _)) = text.filter(|_| found > most) {
         let message = format!("the formula of {} names {found} joint coordinates", section.title);
         let help = format!("write one of at most {most}");

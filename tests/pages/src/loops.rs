@@ -75,7 +75,7 @@ impl Page {
                 false => format!("j{joint}.{coordinate}"),
             };
             let mut text = format!("{} rate", shown(own));
-            for _ in 0..1 + dice.below(2) {
+            for _ in 0..1 + dice.below(5) {
                 let [with, by] = [(); 2].map(|()| coordinates[dice.below(coordinates.len())]);
                 if with == own {
                     continue;
