@@ -160,6 +160,27 @@ fn wires_pull_and_do_not_push() {
     }
 }
 
+/// `hypot` changes by nothing where both its operands are zero: what begins there is linearised and integrated.
+#[test]
+fn drag_has_its_derivatives_at_rest() {
+    let page = format!(
+        "{}[[force]]\nname = \"drag\"\nkind = \"motor\"\njoint = \"rail\"\n\
+         value = \"2 - 3*hypot(rail rate, 0.5*t)*rail rate\"\n",
+        SLIDER.replace("rate = -0.2", "rate = 0")
+    );
+    let expected = integrated_one([0.5, 0.0], 1.0, |_, v, t| (2.0 - 3.0 * v.hypot(0.5 * t) * v) / 2.0);
+    for options in [RUNS[0], RUNS[3], &["--integrator", "rodas4", "--tolerance", "1e-10"]] {
+        let [x, v, _] = end(&run(&page, options, "1"));
+        let error = (x - expected[0]).abs().max((v - expected[1]).abs());
+        assert!(error < 1e-8, "{options:?}: {x} {v} {expected:?}");
+    }
+    let still = page.replace("value = \"2 ", "value = \"");
+    let folder = Folder::new("laws-at-rest");
+    fs::write(folder.0.join("page.toml"), still).unwrap();
+    let linear = json(&folder, &["page.toml", "--linearize", "0"]);
+    assert_eq!(linear["linearization"]["A"], serde_json::json!([[0.0, 1.0], [0.0, 0.0]]));
+}
+
 /// A shaft with a cam that lifts a follower on a spring: `(I + m f'²) θ̈ + m f' f'' θ̇² + k f f' = 0`.
 #[test]
 fn cams_lift_by_their_formula() {

@@ -4,8 +4,9 @@ use super::build::Build;
 use super::computed::{Fault, here};
 use super::expression::Term;
 use super::names;
-use crate::{Curve, Rational, parse_decimal};
+use crate::{Curve, Number, Rational, parse_decimal};
 use gyro_program::elementary::Function;
+use num_traits::Zero;
 
 /// Their names, each with what it takes.
 const ALL: [(&str, &str); 25] = [
@@ -113,7 +114,7 @@ impl Build {
                 let margin = self.difference(b, a);
                 self.where_positive(margin, [b, a])
             }
-            ("hypot", &[a, b]) => self.hypot(a, b),
+            ("hypot", &[a, b]) => self.hypot([a, b]),
             ("mod", &[a, b]) => {
                 let quotient = self.quotient(a, b);
                 let whole = self.call(Function::Floor, [quotient; 2]);
@@ -122,7 +123,8 @@ impl Build {
             }
             ("step", &[x, x0, y0, x1, y1]) => self.step(x, [x0, y0], [x1, y1]),
             ("ramp", &[z, width]) => {
-                let root = self.hypot(z, width);
+                let square = self.squares([z, width]);
+                let root = self.root(square);
                 let (double, half) = (self.sum(z, root), self.exact(Rational::new(1.into(), 2.into())));
                 self.product(half, double)
             }
@@ -148,10 +150,25 @@ impl Build {
         self.quotient(sum, two)
     }
 
-    fn hypot(&mut self, a: usize, b: usize) -> usize {
+    /// √(a² + b²), which changes by nothing where both are zero, as the absolute value does: of s = 0 the root is
+    /// written √(s + 1) − 1, so that a drag `hypot(vx, vy) * vx` has its derivatives at rest.
+    fn hypot(&mut self, [a, b]: [usize; 2]) -> usize {
+        let sum = self.squares([a, b]);
+        if [a, b].map(|x| self.number(x)).iter().any(|x| matches!(x, Some(Number::Exact(x)) if !x.is_zero()))
+        {
+            return self.root(sum);
+        }
+        let [zero, one] = [0, 1].map(|n| self.integer(n));
+        let lift = self.where_positive(sum, [zero, one]);
+        let lifted = self.sum(sum, lift);
+        let root = self.root(lifted);
+        self.difference(root, lift)
+    }
+
+    /// a² + b².
+    fn squares(&mut self, [a, b]: [usize; 2]) -> usize {
         let [a, b] = [a, b].map(|x| self.product(x, x));
-        let sum = self.sum(a, b);
-        self.root(sum)
+        self.sum(a, b)
     }
 
     /// From y0 to y1 by the cubic `y0 + (y1 − y0) s² (3 − 2 s)` of `s = (x − x0) / (x1 − x0)`, and constant beyond.

@@ -8,7 +8,7 @@ use super::scope::Scope;
 use crate::field::Field;
 use constants::{UNITS, of_constants};
 use gyro_model::{Beyond, Curve, Model, Number, Rational, Seen, column, parse_decimal, pi, root};
-use num_traits::Signed;
+use num_traits::{Signed, Zero};
 
 /// What a formula may see of the mechanism.
 pub(super) type See<'s, F> = &'s dyn Fn(Seen) -> Option<Jet<F>>;
@@ -307,7 +307,10 @@ impl<'t, F: Field> Text<'t, '_, F> {
         match (name, operands.as_slice()) {
             ("sqrt", [x]) => self.root(x),
             ("hypot", [a, b]) => self.hypot(a, b),
-            ("ramp", [z, width]) => Some(moving((&z.jet + &self.hypot(z, width)?.jet) * &self.scope.half)),
+            ("ramp", [z, width]) => {
+                let root = self.root(&self.squares(z, width)?)?;
+                Some(moving((&z.jet + &root.jet) * &self.scope.half))
+            }
             ("asin" | "acos", [x]) => {
                 let one = self.constant(Rational::from_integer(1.into()));
                 let square = self.times(x, x)?;
@@ -409,10 +412,19 @@ impl<'t, F: Field> Text<'t, '_, F> {
         })
     }
 
-    /// √(a² + b²).
-    fn hypot(&self, a: &Value<F>, b: &Value<F>) -> Option<Value<F>> {
+    fn squares(&self, a: &Value<F>, b: &Value<F>) -> Option<Value<F>> {
         let squares = [self.times(a, a)?, self.times(b, b)?];
-        self.root(&self.of_both(&squares[0], &squares[1], |a, b| a + b, |a, b| Some(a + b))?)
+        self.of_both(&squares[0], &squares[1], |a, b| a + b, |a, b| Some(a + b))
+    }
+
+    /// √(a² + b²), and zero with zero derivatives where both are zero.
+    fn hypot(&self, a: &Value<F>, b: &Value<F>) -> Option<Value<F>> {
+        let sum = self.squares(a, b)?;
+        if [a, b].iter().any(|x| x.exact.as_ref().is_some_and(|exact| !exact.is_zero())) {
+            return self.root(&sum);
+        }
+        let lift = self.scope.unless(&sum.jet, &self.scope.one);
+        Some(moving(self.scope.sqrt(&(&sum.jet + &lift))? - lift))
     }
 
     /// The square root, of a constant to 42 digits.
