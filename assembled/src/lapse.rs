@@ -112,7 +112,7 @@ impl View<'_> {
                 now.line = [path.value(scene, at), path.grip(scene, &motions).rate];
             }
             Some(ForceKind::Bushing(bushing)) => {
-                seen = Frames::new(self.model, &self.places, bushing).readings(scene, at).seen;
+                seen = Frames::new(self.model, &self.places, bushing.ends()).readings(scene, at).seen;
                 now.frames = Some(&seen);
             }
             _ => {}

@@ -1,8 +1,8 @@
 //! A model without one of its elements, or with more of its numbers tunable: what an element costs is the difference.
 
 use gyro_model::{
-    Between, ForceKind, Formula, Joint, JointEnd, Model, Number, Operation, OutputKind, Parameter, Rational,
-    Seen, Support, analyse,
+    Between, Coupler, ForceKind, Formula, Joint, JointEnd, Model, Number, Operation, OutputKind, Parameter,
+    Rational, Seen, Support, analyse,
 };
 
 /// A model with one thing changed.
@@ -151,10 +151,11 @@ impl Changes<'_> {
     }
 }
 
-/// Whether a force, a state or another output depends on an output: such a model cannot be without it.
+/// Whether a force, a state, a row or another output depends on an output: such a model cannot be without it.
 fn is_seen(model: &Model, output: usize) -> bool {
     let sees = |seen: Seen| matches!(seen, Seen::Output { output: of, .. } if of == output);
-    model.laws().flat_map(Formula::sees).any(sees)
+    let of_rows = model.couplers.iter().flat_map(Coupler::outputs);
+    model.laws().flat_map(Formula::sees).any(sees) || of_rows.into_iter().any(|of| of == output)
 }
 
 /// The force that an output tells.

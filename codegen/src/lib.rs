@@ -297,6 +297,7 @@ fn facts(system: &System) -> Facts {
         OutputKind::Power => is_driven,
         OutputKind::Pose(_)
         | OutputKind::Velocity(_)
+        | OutputKind::Relative(_)
         | OutputKind::Spring { .. }
         | OutputKind::Link { .. }
         | OutputKind::Bushing { .. }

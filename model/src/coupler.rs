@@ -1,6 +1,6 @@
 //! Rows that tie joint coordinates, or their rates.
 
-use crate::{CoordinateUse, Formula, JointCoordinate, Number};
+use crate::{CoordinateUse, Formula, JointCoordinate, Number, Seen};
 
 /// Joint coordinates that are tied: one row. A joint coordinate that follows others, the coordinate less what it is to
 /// be; or a constraint of one's own.
@@ -28,9 +28,9 @@ pub enum Coupling {
     },
     /// A formula of other joint coordinates: a cam, a variable gear.
     Formula(Formula),
-    /// A formula of joint coordinates that is zero.
+    /// A formula of joint coordinates, and of where frames are, that is zero.
     Zero(Formula),
-    /// A formula of joint coordinates and rates, linear in these, that is zero: a row of velocities, of which nothing
+    /// A formula of joint coordinates and rates, and of how frames lie and move, linear in what moves, that is zero: a row of velocities, of which nothing
     /// follows for positions. Φ of it counts as zero, its row in Φ_q is what the rates are multiplied by.
     Rate(Formula),
 }
@@ -46,7 +46,7 @@ impl Coupling {
 }
 
 impl Coupler {
-    /// Most coordinates of its row.
+    /// Most coordinates of its row, an output counted for one.
     pub const MOST: usize = 8;
 
     /// All coordinates of its row.
@@ -59,6 +59,18 @@ impl Coupler {
                     all.push(on);
                 }
             }),
+        }
+        all
+    }
+
+    /// The outputs that its formula sees, each once.
+    pub fn outputs(&self) -> Vec<usize> {
+        let mut all: Vec<usize> = Vec::new();
+        for seen in self.by.formula().into_iter().flat_map(Formula::sees) {
+            match seen {
+                Seen::Output { output, .. } if !all.contains(&output) => all.push(output),
+                _ => {}
+            }
         }
         all
     }

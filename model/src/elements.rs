@@ -1,6 +1,6 @@
 //! What acts between and on bodies besides joints: drivers, forces; and outputs.
 
-use crate::{BodyFrame, Bushing, CoordinateUse, Formula, JointCoordinate, Motion, Number, Seen};
+use crate::{BodyFrame, Bushing, CoordinateUse, Formula, JointCoordinate, Motion, Number, Relative, Seen};
 use std::slice::from_ref;
 
 /// A joint coordinate prescribed in time: one row `coordinate − motion(t)`.
@@ -313,6 +313,8 @@ pub enum OutputKind {
     /// What an inertial sensor reads that is fixed in a frame: specific force `Aᵀ(r̈ − g)` (m/s²) at its origin and
     /// angular rate w' (rad/s), both by its axes.
     Inertial(BodyFrame),
+    /// How the second of two frames lies and moves, seen from the first: see [`Relative`].
+    Relative(Box<Relative>),
     /// Constraint force (N) and torque about the second body's joint point (N·m) that a joint exerts on its second
     /// body, both in the first body's joint frame (f, g, h). Friction, springs, motors and drivers in the joint are not
     /// part of it.
@@ -362,13 +364,14 @@ pub enum OutputKind {
 }
 
 impl OutputKind {
-    /// The frame that it is of, of those that are of one.
-    pub fn frame(&self) -> Option<&BodyFrame> {
+    /// The frames that it is of.
+    pub fn frames(&self) -> &[BodyFrame] {
         match self {
             Self::Pose(frame) | Self::Velocity(frame) | Self::Acceleration(frame) | Self::Inertial(frame) => {
-                Some(frame)
+                from_ref(frame)
             }
-            _ => None,
+            Self::Relative(relative) => &relative.frames,
+            _ => &[],
         }
     }
 
@@ -377,13 +380,14 @@ impl OutputKind {
         if let Self::Formula(formula) = self { Some(formula) } else { None }
     }
 
-    /// The frame, to be changed.
-    pub fn frame_mut(&mut self) -> Option<&mut BodyFrame> {
+    /// The frames, to be changed.
+    pub fn frames_mut(&mut self) -> &mut [BodyFrame] {
         match self {
             Self::Pose(frame) | Self::Velocity(frame) | Self::Acceleration(frame) | Self::Inertial(frame) => {
-                Some(frame)
+                std::slice::from_mut(frame)
             }
-            _ => None,
+            Self::Relative(relative) => &mut relative.frames,
+            _ => &mut [],
         }
     }
 
@@ -417,6 +421,7 @@ impl OutputKind {
                 ("wy", "rad/s"),
                 ("wz", "rad/s"),
             ],
+            Self::Relative(_) => &Relative::COLUMNS,
             Self::Reaction { .. } => &[
                 ("force_f", "N"),
                 ("force_g", "N"),

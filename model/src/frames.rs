@@ -13,6 +13,44 @@ pub struct BodyFrame {
     pub orientation: Option<[Number; 4]>,
 }
 
+/// How the second of two frames lies and moves, seen from the first, by the axes of the first.
+///
+/// With `A_1` and `A_2` the rotation matrices of the frames and d from the origin of the first to that of the second:
+/// `x = A_1ᵀ d`; `A_1ᵀ A_2`, of which `xy` is the first frame's x axis times the second's y axis; ẋ; and the angular
+/// velocity of the second body less that of the first.
+#[derive(Clone, Debug)]
+pub struct Relative {
+    /// The first frame and the second.
+    pub frames: [BodyFrame; 2],
+}
+
+impl Relative {
+    /// How many of its numbers tell where the second frame is; the others tell how it moves.
+    pub const N_PLACES: usize = 12;
+
+    /// Its numbers, with their units.
+    pub const COLUMNS: [(&'static str, &'static str); 18] = [
+        ("x", "m"),
+        ("y", "m"),
+        ("z", "m"),
+        ("xx", ""),
+        ("xy", ""),
+        ("xz", ""),
+        ("yx", ""),
+        ("yy", ""),
+        ("yz", ""),
+        ("zx", ""),
+        ("zy", ""),
+        ("zz", ""),
+        ("vx", "m/s"),
+        ("vy", "m/s"),
+        ("vz", "m/s"),
+        ("wx", "rad/s"),
+        ("wy", "rad/s"),
+        ("wz", "rad/s"),
+    ];
+}
+
 /// What acts between two frames by where the second is, seen from the first.
 ///
 /// With `A_1` and `A_2` the rotation matrices of the frames and d from the origin of the first to that of the second,

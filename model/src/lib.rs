@@ -50,7 +50,7 @@ pub use curve::{Beyond, Curve, Joined};
 pub use diagnostics::{Diagnostic, Diagnostics, Related};
 pub use elements::{Driver, Element, Force, ForceKind, ForceParts, LoadFrame, Output, OutputKind, StopSide};
 pub use event::{Direction, Event};
-pub use frames::{BodyFrame, Bushing, BushingLaw};
+pub use frames::{BodyFrame, Bushing, BushingLaw, Relative};
 pub use joint_kind::JointKind;
 pub use kinematics::Kinematics;
 pub use lines::Lines;

@@ -39,7 +39,7 @@ impl Model {
             numbers.extend(of);
             numbers.extend(of.iter().filter_map(Number::formula).flat_map(Formula::numbers));
         });
-        for frame in self.outputs.iter().filter_map(|output| output.kind.frame()) {
+        for frame in self.outputs.iter().flat_map(|output| output.kind.frames()) {
             numbers.extend(frame.point.iter().chain(frame.orientation.iter().flatten()));
         }
         let formulas = self.outputs.iter().filter_map(|output| output.kind.formula());

@@ -4,7 +4,7 @@ use crate::redundancy::analyse_with_start;
 use crate::{
     BodyFrame, BodyMotion, CoordinateKind, CoordinateUse, Coupler, ForceKind, Formula, JointCoordinate,
     JointKind, Lines, Model, Motion, Number, Parameter, PointAxes, Rational, RedundantRow, Row, RowOwner,
-    RowUnit, Start, Support, Tree, to_f64,
+    RowUnit, Seen, Start, Support, Tree, to_f64,
 };
 use std::ops::Range;
 
@@ -146,7 +146,14 @@ impl Model {
         }
         for (index, coupler) in self.couplers.iter().enumerate() {
             let lengths = || coupler.coordinates().into_iter().any(|on| !self.coordinate_kind(on).is_angle());
-            let constraint = || if lengths() { Length } else { Pure };
+            let is_length = |seen: Seen| match seen {
+                Seen::Output { output, number } => {
+                    self.outputs[output].kind.columns()[number].1.starts_with('m')
+                }
+                _ => false,
+            };
+            let sees = || coupler.by.formula().into_iter().flat_map(Formula::sees).any(is_length);
+            let constraint = || if lengths() || sees() { Length } else { Pure };
             own(
                 RowOwner::Coupler(index),
                 &[coupler.second.map_or_else(constraint, |on| self.coordinate_unit(on))],

@@ -43,6 +43,8 @@ pub(crate) enum Leaf<T> {
     Pose(Spot<T>, usize),
     /// A number of a velocity.
     Velocity(Spot<T>, usize),
+    /// A number of one frame seen from another.
+    Relative(Box<Frames<T>>, usize),
     /// The distance of the ends of the link whose strength it is.
     Length,
     /// The rate of that.
@@ -164,10 +166,14 @@ impl<T: Number> Leaf<T> {
                     }
                     _ => unreachable!("the output is one of a link"),
                 },
+                OutputKind::Relative(relative) => {
+                    let frames = Frames::new(model, places, relative.frames.each_ref());
+                    Self::Relative(Box::new(frames), number)
+                }
                 OutputKind::State { state } => Self::State(first_state(model) + state),
                 OutputKind::Bushing { force } if number < 6 => match &model.forces[*force].kind {
                     ForceKind::Bushing(bushing) => {
-                        Self::Seen(Box::new(Frames::new(model, places, bushing)), number)
+                        Self::Seen(Box::new(Frames::new(model, places, bushing.ends())), number)
                     }
                     _ => unreachable!("the output is one of a bushing"),
                 },
@@ -197,6 +203,7 @@ impl<T: Number> Leaf<T> {
             Self::Between(k) => now.frames.map_or(T::zero(), |[places, _]| places[*k]),
             Self::BetweenRate(k) => now.frames.map_or(T::zero(), |[_, rates]| rates[*k]),
             Self::Seen(frames, k) => frames.readings(scene, at).seen[0][*k],
+            Self::Relative(frames, k) => frames.relative(scene, at)[*k],
             Self::Output(place) => now.outputs.get(*place).copied().unwrap_or_else(T::zero),
         }
     }

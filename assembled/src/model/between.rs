@@ -1,4 +1,5 @@
-//! How one frame lies and moves, seen from another: the readings of [`gyro_model::Bushing`].
+//! How one frame lies and moves, seen from another: the readings of [`gyro_model::Bushing`], and
+//! [`gyro_model::Relative`].
 //!
 //! The Cardan angles are taken for those of three hinges in a row: about the first frame's x axis, about the normal of
 //! that axis and the second frame's z axis, and about the latter.
@@ -9,7 +10,7 @@ use crate::model::place::{Moment, Places};
 use crate::model::scene::Scene;
 use crate::model::spot::Spot;
 use crate::number::{Number, atan2, number};
-use gyro_model::{Bushing, Model};
+use gyro_model::{BodyFrame, Model};
 use nalgebra::{Matrix3, Vector3};
 
 /// Two frames.
@@ -30,8 +31,26 @@ pub(crate) struct Readings<T: Number> {
 }
 
 impl<T: Number> Frames<T> {
-    pub(crate) fn new(model: &Model, places: &Places<T>, bushing: &Bushing) -> Self {
-        Self(bushing.ends().map(|frame| Spot::new(model, places, frame)))
+    pub(crate) fn new(model: &Model, places: &Places<T>, frames: [&BodyFrame; 2]) -> Self {
+        Self(frames.map(|frame| Spot::new(model, places, frame)))
+    }
+
+    /// The numbers of [`gyro_model::Relative`].
+    pub(crate) fn relative(&self, scene: &Scene<T>, at: Moment<'_, T>) -> [T; 18] {
+        let [first, second] = &self.0;
+        let motions = self.0.each_ref().map(|spot| scene.motion(at, &spot.place));
+        let [i, j] = &motions;
+        let axes = first.axes(i);
+        let line = j.tip(&second.point) - i.tip(&first.point);
+        let drift = j.tip_velocity(&second.point) - i.tip_velocity(&first.point) - i.omega().cross(&line);
+        let [place, moved, spin] = [line, drift, j.omega() - i.omega()].map(|vector| axes.tr_mul(&vector));
+        let turned = axes.tr_mul(&second.axes(j));
+        std::array::from_fn(|k| match k {
+            0..3 => place[k],
+            3..12 => turned[(k / 3 - 1, k % 3)],
+            12..15 => moved[k - 12],
+            _ => spin[k - 15],
+        })
     }
 
     pub(crate) fn readings(&self, scene: &Scene<T>, at: Moment<'_, T>) -> Readings<T> {

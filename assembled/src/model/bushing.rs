@@ -41,7 +41,7 @@ impl<T: Number> Bushing<T> {
             })
         };
         Self {
-            frames: Frames::new(model, parts.0, bushing),
+            frames: Frames::new(model, parts.0, bushing.ends()),
             stiffness: amounts(0),
             damping: amounts(1),
             load: amounts(2),

@@ -38,7 +38,7 @@ impl<'a, T: Number> Pairs<'a, T> {
             *last = None;
         }
         let evaluate = || {
-            let joint = &lowered.scene.joints[joint];
+            let joint = lowered.scene.joint(joint);
             [&joint.first.place, &joint.second.place].map(|place| {
                 let motion = lowered.scene.motion(*at, place);
                 if place.moving_body().is_some() { moved(motion) } else { motion }
@@ -138,8 +138,7 @@ impl<T: Number> Lowered<T> {
             let mut size =
                 course.as_ref().map_or(0.0, |course| course.jet(gyro_sim::Real::to_f64(at.t))[0].abs());
             for term in terms {
-                let [value, ..] =
-                    term.measure.jet(&self.scene.joints[term.joint], pairs.of(term.joint), at.y);
+                let [value, ..] = term.measure.jet(self.scene.joint(term.joint), pairs.of(term.joint), at.y);
                 size += gyro_sim::Real::to_f64(abs(term.factor * value));
             }
             f(index, number(size));
@@ -151,7 +150,7 @@ impl<T: Number> Lowered<T> {
         let prescribed = course.map_or([0.0; 3], |course| course.jet(gyro_sim::Real::to_f64(t)));
         let start = prescribed.map(|x| -number::<T>(x));
         terms.iter().fold(start, |sum, term| {
-            let jet = term.measure.jet(&self.scene.joints[term.joint], pairs.of(term.joint), y);
+            let jet = term.measure.jet(self.scene.joint(term.joint), pairs.of(term.joint), y);
             [0, 1, 2].map(|k| sum[k] + term.factor * jet[k])
         })
     }
@@ -210,7 +209,7 @@ impl<T: Number> Lowered<T> {
         pairs: &mut Pairs<'_, T>,
         turning: Turning<T, N>,
     ) -> [(Option<usize>, Pull<T, N>); 2] {
-        let joint = &self.scene.joints[term.joint];
+        let joint = self.scene.joint(term.joint);
         let [first, second] = term.measure.pulls(joint, pairs.of(term.joint), turning);
         [(joint.first.place.moving_body(), first), (joint.second.place.moving_body(), second)]
     }
@@ -218,7 +217,7 @@ impl<T: Number> Lowered<T> {
     /// What joints measure, with its derivatives in time.
     fn jets(&self, terms: &[Term<T>], pairs: &mut Pairs<'_, T>) -> Vec<[T; 3]> {
         let y = pairs.at.y;
-        let one = |term: &Term<T>| term.measure.jet(&self.scene.joints[term.joint], pairs.of(term.joint), y);
+        let one = |term: &Term<T>| term.measure.jet(self.scene.joint(term.joint), pairs.of(term.joint), y);
         terms.iter().map(one).collect()
     }
 

@@ -2,8 +2,9 @@
 
 use crate::model::kinds::{Axis, Primitive, primitives};
 use crate::model::place::{Place, Places, vector};
+use crate::model::spot::Spot;
 use crate::number::{Number, number};
-use gyro_model::{CoordinateKind, JointCoordinate, JointEnd, JointKind, Model};
+use gyro_model::{BodyFrame, CoordinateKind, JointCoordinate, JointEnd, JointKind, Model, OutputKind};
 use nalgebra::Vector3;
 
 /// A joint between two bodies.
@@ -61,6 +62,12 @@ impl<T: Number> End<T> {
         let [f, g, h] = [f, h.cross(&f), h].map(|v| v.map(number::<T>));
         Self { place: places.of(end.body), point: vector(model.values(&end.point)), f, g, h }
     }
+
+    fn of_frame(model: &Model, places: &Places<T>, frame: &BodyFrame) -> Self {
+        let Spot { place, point, turn } = Spot::new(model, places, frame);
+        let [f, g, h] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| turn * axis);
+        Self { place, point, f, g, h }
+    }
 }
 
 impl<T: Number> Joint<T> {
@@ -90,6 +97,26 @@ impl<T: Number> Joint<T> {
             index,
             readings: readings(joint.kind),
             dots,
+        }
+    }
+}
+
+impl<T: Number> Joint<T> {
+    /// Two frames that no joint ties.
+    pub(crate) fn of_frames(model: &Model, places: &Places<T>, output: usize) -> Self {
+        let OutputKind::Relative(relative) = &model.outputs[output].kind else {
+            unreachable!("rows see outputs of two frames only")
+        };
+        let [first, second] = relative.frames.each_ref().map(|frame| End::of_frame(model, places, frame));
+        Self {
+            kind: JointKind::Spherical,
+            first,
+            second,
+            length: T::zero(),
+            references: Vec::new(),
+            index: model.joints.len(),
+            readings: Vec::new(),
+            dots: Vec::new(),
         }
     }
 }

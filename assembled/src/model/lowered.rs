@@ -9,7 +9,7 @@ use crate::model::rotor::Rotor;
 use crate::model::rows::Row;
 use crate::model::scene::Scene;
 use crate::number::{Number, number};
-use gyro_model::{AssemblyError, JointCoordinate, Model, RowOwner, RowUnit};
+use gyro_model::{AssemblyError, Coupler, JointCoordinate, Model, RowOwner, RowUnit};
 use gyro_sim::{Owner, RowInfo};
 
 /// A model in numbers. It holds no state but the values of the inputs.
@@ -44,10 +44,13 @@ impl<T: Number> Lowered<T> {
         let turns = model.turn_references();
         let first_turn = first_state(model) + model.states.len();
         let reference = |of| turns.iter().position(|&turn| turn == of).map(|index| first_turn + index);
-        let scene = Scene::new(model, &places, reference);
+        let pairs = pairs_of_rows(model);
+        let scene = Scene::new(model, &places, reference, &pairs);
         let rows = model.rows();
         Ok(Self {
-            rows: rows.iter().map(|row| Row::new(model, &moving_bodies, &scene.joints, row)).collect(),
+            rows: (rows.iter())
+                .map(|row| Row::new(model, &moving_bodies, (&scene.joints, &pairs), row))
+                .collect(),
             n_dependent: model.redundant.len() - model.dropped().count(),
             row_infos: rows.iter().map(|row| row_info(&moving_bodies, row)).collect(),
             elements: Element::all(model, &places, &scene.joints),
@@ -87,6 +90,14 @@ impl<T: Number> Lowered<T> {
     pub(crate) fn n_rows(&self) -> usize {
         self.rows.len()
     }
+}
+
+/// The outputs of two frames that rows see, by their indices.
+fn pairs_of_rows(model: &Model) -> Vec<usize> {
+    let mut pairs: Vec<_> = model.couplers.iter().flat_map(Coupler::outputs).collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
 }
 
 fn row_info(moving_bodies: &[usize], row: &gyro_model::Row) -> RowInfo {

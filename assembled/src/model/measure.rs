@@ -63,6 +63,15 @@ impl Measure {
         }
     }
 
+    /// A number of two frames that tells where the second is: see [`gyro_model::Relative`].
+    pub(crate) fn of_place(number: usize) -> Self {
+        let axis = |k: usize| [Axis::F, Axis::G, Axis::H][k % 3];
+        Self::Primitive(match number {
+            0..3 => Primitive::Dot2(axis(number)),
+            _ => Primitive::Dot1(axis(number / 3 - 1), axis(number)),
+        })
+    }
+
     /// Value, first and second time derivative, as in [`Primitive::jet`].
     pub(crate) fn jet<T: Number>(&self, joint: &Joint<T>, motions: &[Motion<T>; 2], y: &[T]) -> [T; 3] {
         match self {

@@ -52,6 +52,7 @@ impl<T: Number> Lowered<T> {
                 let [felt, w] = [motion.a.tr_mul(&specific_force), motion.w].map(|v| spot.by_axes(v));
                 write(out, &felt, w.as_slice());
             }
+            Quantity::Relative(frames) => out.copy_from_slice(&frames.relative(&self.scene, at)),
             Quantity::Reaction(joint, rows) => {
                 let [force, torque] = self.reaction(at, *joint, rows, solution.lambda);
                 write(out, &force, torque.as_slice());

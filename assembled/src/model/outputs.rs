@@ -1,6 +1,7 @@
 //! What a model file asks for besides the motion: [`gyro_model::OutputKind`].
 
 use crate::model::amount::Amount;
+use crate::model::between::Frames;
 use crate::model::bushing::Bushing;
 use crate::model::joint::Joint;
 use crate::model::measure::Coordinate;
@@ -24,6 +25,7 @@ pub(crate) enum Quantity<T> {
     Velocity(Spot<T>),
     Acceleration(Spot<T>),
     Inertial(Spot<T>),
+    Relative(Box<Frames<T>>),
     /// A joint and its rows.
     Reaction(usize, Vec<usize>),
     /// The row of a driver or coupler, unless it was redundant.
@@ -106,6 +108,9 @@ impl<T: Number> Output<T> {
             OutputKind::Velocity(frame) => Quantity::Velocity(spot(frame)),
             OutputKind::Acceleration(frame) => Quantity::Acceleration(spot(frame)),
             OutputKind::Inertial(frame) => Quantity::Inertial(spot(frame)),
+            OutputKind::Relative(relative) => {
+                Quantity::Relative(Box::new(Frames::new(model, places, relative.frames.each_ref())))
+            }
             OutputKind::Reaction { joint } => Quantity::Reaction(*joint, rows_of(RowOwner::Joint(*joint))),
             OutputKind::Driver { driver } => {
                 Quantity::Load(rows_of(RowOwner::Driver(*driver)).first().copied())

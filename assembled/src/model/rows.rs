@@ -4,7 +4,7 @@ use crate::model::course::Course;
 use crate::model::joint::Joint;
 use crate::model::kinds::{Axis, Primitive, primitives};
 use crate::model::measure::{Coordinate, Measure, Term};
-use crate::model::tracked::Tracked;
+use crate::model::tracked::{Subject, Tracked};
 use crate::number::{Number, number};
 use gyro_model::{Coupling, JointCoordinate, JointKind, Model, RowOwner};
 
@@ -25,13 +25,21 @@ impl<T: Number> Row<T> {
     pub(crate) fn new(
         model: &Model,
         moving_bodies: &[usize],
-        joints: &[Joint<T>],
+        (joints, pairs): (&[Joint<T>], &[usize]),
         row: &gyro_model::Row,
     ) -> Self {
         let coordinate = |factor: f64, of: JointCoordinate| Term {
             factor: number(factor),
             joint: of.joint,
             measure: Coordinate::of(&joints[of.joint], of.coordinate).measure,
+        };
+        let subject = |subject: Subject| match subject {
+            Subject::Coordinate(of) => coordinate(1.0, of),
+            Subject::Place(output, number) => {
+                let pair =
+                    pairs.iter().position(|pair| *pair == output).expect("all that rows see are there");
+                Term { factor: T::one(), joint: joints.len() + pair, measure: Measure::of_place(number) }
+            }
         };
         match row.owner {
             RowOwner::Body(body) => {
@@ -60,11 +68,9 @@ impl<T: Number> Row<T> {
                     },
                     Coupling::Formula(formula) | Coupling::Zero(formula) => Self::Followed {
                         second: coupler.second.map(|on| coordinate(1.0, on)),
-                        formula: Tracked::new(model, formula, |on| coordinate(1.0, on)),
+                        formula: Tracked::new(model, formula, subject),
                     },
-                    Coupling::Rate(formula) => {
-                        Self::Rolling(Tracked::new(model, formula, |on| coordinate(1.0, on)))
-                    }
+                    Coupling::Rate(formula) => Self::Rolling(Tracked::new(model, formula, subject)),
                 }
             }
             RowOwner::Driver(driver) => {

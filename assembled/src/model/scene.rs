@@ -21,6 +21,8 @@ pub struct Scene<T: Number> {
     /// Bodies whose whole motion is prescribed.
     pub(crate) driven: Vec<DrivenBody>,
     pub(crate) joints: Vec<Joint<T>>,
+    /// The frames that rows see besides those of joints.
+    pairs: Vec<Joint<T>>,
     /// Names and values.
     pub(crate) inputs: Vec<(String, T)>,
 }
@@ -47,6 +49,7 @@ impl<T: Number> Scene<T> {
         model: &Model,
         places: &Places<T>,
         reference: impl Fn(JointCoordinate) -> Option<usize> + Copy,
+        pairs: &[usize],
     ) -> Self {
         let moving_bodies = model.coordinate_bodies();
         let joints: Vec<_> =
@@ -65,6 +68,7 @@ impl<T: Number> Scene<T> {
             bodies: moving_bodies.iter().map(|&body| lower_body(model, body)).collect(),
             constrained: moving_bodies.iter().enumerate().filter_map(constrained).collect(),
             driven: driven.map(|body| DrivenBody::new(model, body)).collect(),
+            pairs: pairs.iter().map(|output| Joint::of_frames(model, places, *output)).collect(),
             joints,
             inputs: model
                 .inputs
@@ -72,6 +76,11 @@ impl<T: Number> Scene<T> {
                 .map(|p| (p.name.clone(), number(gyro_model::to_f64(&p.value))))
                 .collect(),
         }
+    }
+
+    /// A joint, or two frames that a row sees.
+    pub(crate) fn joint(&self, index: usize) -> &Joint<T> {
+        self.joints.get(index).unwrap_or_else(|| &self.pairs[index - self.joints.len()])
     }
 
     /// The acceleration of what falls freely at a point.

@@ -13,7 +13,7 @@ pub(crate) struct Spot<T> {
     /// Its origin, in the body's frame.
     pub(crate) point: Vector3<T>,
     /// How it is turned in the body's frame.
-    turn: UnitQuaternion<T>,
+    pub(crate) turn: UnitQuaternion<T>,
 }
 
 impl<T: Number> Spot<T> {

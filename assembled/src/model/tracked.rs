@@ -1,41 +1,75 @@
-//! Formulas of what joints measure, with derivatives: what coordinates are to be that couplers move.
+//! Formulas of what joints measure, and of where frames are, with derivatives: rows by formula.
 
 use crate::model::curves::Curves;
 use crate::model::jets::{Jet, jet};
 use crate::model::measure::Term;
 use crate::number::{Number, number};
-use gyro_model::{Formula, JointCoordinate, Model, Operation, Seen};
+use gyro_model::{Formula, JointCoordinate, Model, Operation, Relative, Seen};
 
-/// A formula of joint coordinates.
+/// A formula of joint coordinates and of where frames are.
 #[derive(Clone, Debug)]
 pub(crate) struct Tracked<T> {
     formula: Formula,
     curves: Curves,
     /// Of each operation its number, if it is one; zero of others.
     numbers: Vec<T>,
-    /// The coordinates, each once.
+    /// What it depends on, each once.
     pub(crate) terms: Vec<Term<T>>,
-    coordinates: Vec<JointCoordinate>,
+    subjects: Vec<Subject>,
+}
+
+/// What a formula may be differentiated by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Subject {
+    Coordinate(JointCoordinate),
+    /// A number of an output of two frames that tells where the second is.
+    Place(usize, usize),
+}
+
+impl Subject {
+    /// What is needed to tell a number.
+    fn of(seen: Seen) -> Vec<Self> {
+        match seen {
+            Seen::Coordinate(on) | Seen::Rate(on) => vec![Self::Coordinate(on)],
+            Seen::Output { output, number } => match number {
+                0..Relative::N_PLACES => vec![Self::Place(output, number)],
+                12..15 => vec![Self::Place(output, number - 12)],
+                _ => {
+                    let [from, to] = rows_about(number - 15);
+                    from.chain(to).map(|place| Self::Place(output, place)).collect()
+                }
+            },
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// The rows of R that tell a component of `ω̃ = Ṙ Rᵀ`.
+fn rows_about(axis: usize) -> [std::ops::Range<usize>; 2] {
+    [1, 2].map(|next| {
+        let first = 3 + 3 * ((axis + next) % 3);
+        first..first + 3
+    })
 }
 
 impl<T: Number> Tracked<T> {
-    pub(crate) fn new(model: &Model, formula: &Formula, term: impl Fn(JointCoordinate) -> Term<T>) -> Self {
+    pub(crate) fn new(model: &Model, formula: &Formula, term: impl Fn(Subject) -> Term<T>) -> Self {
         let value = |operation: &Operation| match operation {
             Operation::Number(value) => number(model.value(value)),
             _ => T::zero(),
         };
-        let mut coordinates: Vec<_> = Vec::new();
-        for (on, _) in formula.uses() {
-            if !coordinates.contains(&on) {
-                coordinates.push(on);
+        let mut subjects: Vec<_> = Vec::new();
+        for subject in formula.sees().flat_map(Subject::of) {
+            if !subjects.contains(&subject) {
+                subjects.push(subject);
             }
         }
         Self {
             formula: formula.clone(),
             curves: Curves::of(model, formula),
             numbers: formula.operations.iter().map(value).collect(),
-            terms: coordinates.iter().map(|on| term(*on)).collect(),
-            coordinates,
+            terms: subjects.iter().map(|subject| term(*subject)).collect(),
+            subjects,
         }
     }
 
@@ -44,37 +78,50 @@ impl<T: Number> Tracked<T> {
         Self::new(model, formula, |_| unreachable!("the reader allows no coordinates in motions"))
     }
 
-    /// The value with its derivatives, from those of the coordinates in their order and the time.
-    pub(crate) fn jet(&self, coordinates: &[Jet<T>], t: T) -> Jet<T> {
+    /// The value with its derivatives, from those of the subjects in their order and the time.
+    pub(crate) fn jet(&self, jets: &[Jet<T>], t: T) -> Jet<T> {
         let zero = T::zero();
+        let of = |subject: Subject| {
+            let place = self.subjects.iter().position(|known| *known == subject);
+            place.map_or([zero; 3], |place| jets[place])
+        };
+        let rate = |subject: Subject| {
+            let [_, rate, second] = of(subject);
+            [rate, second, zero]
+        };
         jet(&self.formula, &self.curves, |place, operation| match operation {
-            Operation::Seen(Seen::Coordinate(on)) => {
-                let place = self.coordinates.iter().position(|known| known == on);
-                place.map_or([zero; 3], |place| coordinates[place])
-            }
-            Operation::Seen(Seen::Rate(on)) => {
-                let place = self.coordinates.iter().position(|known| known == on);
-                place.map_or([zero; 3], |place| [coordinates[place][1], coordinates[place][2], zero])
-            }
+            Operation::Seen(Seen::Coordinate(on)) => of(Subject::Coordinate(*on)),
+            Operation::Seen(Seen::Rate(on)) => rate(Subject::Coordinate(*on)),
+            Operation::Seen(Seen::Output { output, number }) => match number {
+                0..Relative::N_PLACES => of(Subject::Place(*output, *number)),
+                12..15 => rate(Subject::Place(*output, number - 12)),
+                _ => {
+                    let [from, to] = rows_about(number - 15);
+                    from.zip(to).fold([zero; 3], |[value, slope, _], (from, to)| {
+                        let [from, to] = [from, to].map(|place| of(Subject::Place(*output, place)));
+                        [value + to[1] * from[0], slope + to[2] * from[0] + to[1] * from[1], zero]
+                    })
+                }
+            },
             // The reader allows nothing else.
             Operation::Seen(_) => [t, T::one(), zero],
             _ => [self.numbers[place], zero, zero],
         })
     }
 
-    /// The derivatives by each coordinate, or by each rate of what is linear in rates.
-    pub(crate) fn slopes(&self, coordinates: &[Jet<T>], by_rates: bool) -> Vec<T> {
+    /// The derivatives by each subject, or by each rate of what is linear in rates.
+    pub(crate) fn slopes(&self, jets: &[Jet<T>], by_rates: bool) -> Vec<T> {
         let one = |by: usize| {
-            let seeded = coordinates.iter().enumerate().map(|(place, [value, ..])| {
+            let seeded = jets.iter().enumerate().map(|(place, [value, ..])| {
                 [*value, if place == by { T::one() } else { T::zero() }, T::zero()]
             });
             // What is linear in rates is its own derivative by one of them.
             self.jet(&seeded.collect::<Vec<_>>(), T::zero())[usize::from(!by_rates)]
         };
-        (0..coordinates.len()).map(one).collect()
+        (0..jets.len()).map(one).collect()
     }
 
-    /// The coordinates times their derivatives.
+    /// The subjects times their derivatives.
     pub(crate) fn times<'a>(&'a self, slopes: &'a [T], sign: T) -> impl Iterator<Item = Term<T>> + 'a {
         self.terms.iter().zip(slopes).map(move |(term, slope)| Term { factor: sign * *slope, ..*term })
     }

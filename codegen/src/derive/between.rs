@@ -1,4 +1,5 @@
-//! How one frame lies and moves, seen from another: the readings of bushings, see [`gyro_model::Bushing`].
+//! How one frame lies and moves, seen from another: [`gyro_model::Relative`], and the readings of bushings, see
+//! [`gyro_model::Bushing`].
 
 use crate::derive::joint_coordinate::Load;
 use crate::derive::points;
@@ -7,14 +8,15 @@ use crate::expr::graph::{ExprId, Graph};
 use crate::expr::vector::{Mat3, Vec3, ZERO3, transposed};
 use gyro_model::{BodyFrame, Bushing};
 
-/// The second frame of a bushing as the first sees it.
-pub struct Between {
-    /// Components and Cardan angles.
-    pub places: [ExprId; 6],
-    pub rates: [ExprId; 6],
-    /// Of each angle the vector whose product with the relative angular velocity is the angle's rate, by the axes of
-    /// the first frame.
-    torques: [Vec3; 3],
+/// How the second of two frames lies and moves, seen from the first, by its axes.
+pub struct Seen {
+    /// From the first origin to the second.
+    pub place: Vec3,
+    /// The second frame's axes.
+    pub turned: Mat3,
+    pub velocity: Vec3,
+    /// The angular velocity of the second body less that of the first.
+    pub spin: Vec3,
     /// From the first body's mass centre to the second frame's origin, in the first body's frame.
     arm: Vec3,
     /// `A_iᵀ A_j` of the two bodies.
@@ -23,9 +25,8 @@ pub struct Between {
     axes: Option<Mat3>,
 }
 
-impl Between {
-    pub fn new(system: &mut System, bushing: &Bushing) -> Self {
-        let [first, second] = bushing.ends();
+impl Seen {
+    pub fn new(system: &mut System, [first, second]: [&BodyFrame; 2]) -> Self {
         let [own_first, own_second] = [first, second].map(|frame| points::axes(system, frame));
         let (i, j) = (system.poses[first.body], system.poses[second.body]);
         let relative = system.graph.mat_mul(&transposed(&i.a), &j.a);
@@ -43,18 +44,36 @@ impl Between {
         let distance = graph.sub_vec(&arm, &point);
         let carried = graph.mat_vec(&relative, &j.w);
         let spin = graph.sub_vec(&carried, &i.w);
-        let [distance, moved, spin] =
+        let [place, velocity, spin] =
             [distance, moved, spin].map(|vector| into_frame(graph, own_first.as_ref(), &vector));
-        let (angles, torques) = cardan_angles(graph, &turned);
-        let turning = torques.map(|torque| graph.dot(&torque, &spin));
-        Self {
-            places: six(distance, angles),
-            rates: six(moved, turning),
-            torques,
-            arm,
-            relative,
-            axes: own_first,
-        }
+        Self { place, turned, velocity, spin, arm, relative, axes: own_first }
+    }
+
+    /// The numbers of [`gyro_model::Relative`].
+    pub fn numbers(&self) -> Vec<ExprId> {
+        let [x, y, z] = self.turned;
+        [self.place, x, y, z, self.velocity, self.spin].concat()
+    }
+}
+
+/// The second frame of a bushing as the first sees it.
+pub struct Between {
+    /// Components and Cardan angles.
+    pub places: [ExprId; 6],
+    pub rates: [ExprId; 6],
+    /// Of each angle the vector whose product with the relative angular velocity is the angle's rate, by the axes of
+    /// the first frame.
+    torques: [Vec3; 3],
+    seen: Seen,
+}
+
+impl Between {
+    pub fn new(system: &mut System, bushing: &Bushing) -> Self {
+        let seen = Seen::new(system, bushing.ends());
+        let graph = &mut system.graph;
+        let (angles, torques) = cardan_angles(graph, &seen.turned);
+        let turning = torques.map(|torque| graph.dot(&torque, &seen.spin));
+        Self { places: six(seen.place, angles), rates: six(seen.velocity, turning), torques, seen }
     }
 
     /// What forces along the readings do to both bodies.
@@ -68,14 +87,15 @@ impl Between {
             graph.add_vec(&sum, &part)
         });
         // Both in the first body's frame.
-        let [force, torque] = [[x, y, z], torque].map(|vector| match &self.axes {
+        let [force, torque] = [[x, y, z], torque].map(|vector| match &self.seen.axes {
             Some(axes) => graph.mat_vec(axes, &vector),
             None => vector,
         });
-        let (moment, global) = (graph.cross(&self.arm, &force), graph.mat_vec(&a_i, &force));
+        let (moment, global) = (graph.cross(&self.seen.arm, &force), graph.mat_vec(&a_i, &force));
         let taken = graph.add_vec(&moment, &torque);
         let on_first = Load { force: graph.neg_vec(&global), torque: graph.neg_vec(&taken) };
-        let [pushed, turned] = [force, torque].map(|vector| graph.transposed_vec(&self.relative, &vector));
+        let [pushed, turned] =
+            [force, torque].map(|vector| graph.transposed_vec(&self.seen.relative, &vector));
         let moment = graph.cross(&point, &pushed);
         [on_first, Load { force: global, torque: graph.add_vec(&moment, &turned) }]
     }

@@ -3,10 +3,12 @@
 use crate::derive::constraints::{self, Along};
 use crate::derive::in_time::in_time;
 use crate::derive::system::System;
+use crate::expr::definitions::{Definitions, Expansion, Values};
 use crate::expr::differentiate::{Derivative, Direction};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use crate::expr::vector::Vec3;
+use crate::simplify::normal_form::is_zero_at_points;
 use rustc_hash::FxHashMap as HashMap;
 use std::collections::BTreeSet;
 
@@ -50,6 +52,7 @@ impl Kinematics {
         let mut nu: Vec<_> = phi_t.iter().map(|&row| system.graph.neg(row)).collect();
         let mut velocity_residual = motion_derivative(system, &phi);
         for (row, by_time) in constraints::of_velocities(system, &Along(time)) {
+            let by_time = at_rest(system, by_time);
             nu[row] = system.graph.neg(by_time);
         }
         let motion = Along(system.motion());
@@ -78,12 +81,22 @@ fn velocities(system: &System) -> impl Iterator<Item = Symbol> + use<> {
     (0..system.moving_bodies.len()).flat_map(of)
 }
 
+/// An expression where bodies with coordinates rest.
+fn at_rest(system: &mut System, moving: ExprId) -> ExprId {
+    let still = velocities(system).map(|symbol| (symbol, Graph::ZERO)).collect();
+    Expansion::with_values(&Definitions::default(), still).of(&mut system.graph, moving)
+}
+
 /// What each velocity is multiplied by in a row of velocities.
 fn by_velocities(system: &mut System, residual: ExprId) -> Vec<ExprId> {
+    let euler = system.moving_bodies.iter().map(|&body| system.poses[body].p.to_vec());
+    let unit: Vec<_> = euler.collect();
     let velocities = velocities(system);
     let of = |symbol| {
         let direction = Direction::from([(symbol, Graph::ONE)]);
-        Derivative::new(&system.definitions, direction).of(&mut system.graph, residual)
+        let factor = Derivative::new(&system.definitions, direction).of(&mut system.graph, residual);
+        let expanded = system.expanded(&Values::default(), &[factor])[0];
+        if is_zero_at_points(&system.graph, &unit, expanded) { Graph::ZERO } else { factor }
     };
     velocities.map(of).collect()
 }

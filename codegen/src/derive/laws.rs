@@ -1,6 +1,6 @@
 //! Strengths of forces that are formulas, see [`gyro_model::Formula`].
 
-use crate::derive::between::Between;
+use crate::derive::between::{self, Between};
 use crate::derive::joint_coordinate;
 use crate::derive::points::{self, PointOfBody};
 use crate::derive::system::System;
@@ -85,6 +85,9 @@ fn of_output(system: &mut System, output: usize, number: usize) -> ExprId {
         OutputKind::State { state } => system.graph.symbol(Symbol::State(*state)),
         OutputKind::Pose(frame) => points::pose(system, frame)[number],
         OutputKind::Velocity(frame) => points::velocity(system, frame)[number],
+        OutputKind::Relative(relative) => {
+            between::Seen::new(system, relative.frames.each_ref()).numbers()[number]
+        }
         // Of these the rates alone.
         OutputKind::Inertial(frame) => {
             let w = system.poses[frame.body].w;

@@ -1,6 +1,7 @@
 //! The outputs that the model file asks for, in terms of the state, of [`Symbol::Acceleration`] and of the multipliers.
 
 use crate::derive::attraction;
+use crate::derive::between;
 use crate::derive::bushings;
 use crate::derive::dynamics::Dynamics;
 use crate::derive::forces;
@@ -53,6 +54,7 @@ fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<Exp
         OutputKind::Pose(frame) => points::pose(system, frame),
         OutputKind::Velocity(frame) => points::velocity(system, frame),
         OutputKind::Acceleration(frame) => acceleration(system, frame),
+        OutputKind::Relative(relative) => between::Seen::new(system, relative.frames.each_ref()).numbers(),
         OutputKind::Inertial(frame) => {
             let (linear, _) = linear_and_angular(system, frame);
             let pose = system.poses[frame.body];

@@ -1,9 +1,12 @@
 //! The joints that close loops, in joint coordinates: their rows, what the rates change them by, and how fast that
 //! itself changes.
 
+use super::dynamics;
 use super::embedding::Embedding;
 use super::forces::OfJoints;
 use super::layout::{Layout, Place};
+use super::link_kinematics::LinkKinematics;
+use super::maps;
 use super::relation::Relation;
 use super::whole_angles::WholeAngles;
 use crate::derive::constraints;
@@ -95,12 +98,52 @@ impl Readings for OfLoops<'_> {
 }
 
 /// The rows of velocities in joint coordinates and rates.
-fn of_velocities(system: &mut System, layout: &Layout, angles: &WholeAngles) -> Vec<(usize, ExprId)> {
+fn of_velocities(
+    system: &mut System,
+    (layout, angles): (&Layout, &WholeAngles),
+    links: &[LinkKinematics],
+) -> Vec<(usize, ExprId)> {
     let readings = OfLoops(OfJoints { layout, angles });
     let (rows, own): (Vec<_>, Vec<_>) = constraints::of_velocities(system, &readings).into_iter().unzip();
-    let own = system.expanded(&angles.poses, &own);
+    let velocities = velocities(system, (layout, angles), links, &own);
+    let mut values = maps::expanded(system, angles.poses.clone(), velocities);
+    values.extend(&angles.poses);
+    let own = system.expanded(&values, &own);
     let held = all_held(system, layout);
     rows.into_iter().zip(system.expanded(&held, &own)).collect()
+}
+
+/// The velocities (s, w') that some expressions have in them: s as the derivative of where the body is.
+fn velocities(
+    system: &mut System,
+    (layout, angles): (&Layout, &WholeAngles),
+    links: &[LinkKinematics],
+    within: &[ExprId],
+) -> Values {
+    let named: BTreeSet<_> = (system.graph.reachable(within).into_iter())
+        .filter_map(|id| match *system.graph.node(id) {
+            Node::Symbol(symbol @ (Symbol::Velocity { .. } | Symbol::Spin { .. })) => Some(symbol),
+            _ => None,
+        })
+        .collect();
+    if named.is_empty() {
+        return Values::default();
+    }
+    let embedding = Embedding::identity(layout.n_tree_rates());
+    let motion = Directions { layout, angles, embedding: &embedding };
+    let motion = motion.of_motion(&mut system.graph, system.model);
+    let definitions = Definitions::default();
+    let mut derivative = Derivative::new(&definitions, motion);
+    let spins = dynamics::spins(system, links);
+    let of = |symbol| match symbol {
+        Symbol::Velocity { moving_body, k } => {
+            let place = angles.poses[&Symbol::Position { moving_body, k }];
+            (symbol, derivative.of(&mut system.graph, place))
+        }
+        Symbol::Spin { moving_body, k } => (symbol, spins[moving_body][k]),
+        _ => unreachable!("no other symbol is taken"),
+    };
+    named.into_iter().map(of).collect()
 }
 
 /// The values of all coordinates that loops hold; angles that x counts stay symbols.
@@ -153,10 +196,10 @@ impl Closure {
         system: &mut System,
         rows: Vec<(usize, ExprId)>,
         (layout, angles): (&Layout, &WholeAngles),
-        embedding: &Embedding,
+        (embedding, links): (&Embedding, &[LinkKinematics]),
         unit: &[Vec<ExprId>],
     ) -> Self {
-        let own: BTreeMap<_, _> = of_velocities(system, layout, angles).into_iter().collect();
+        let own: BTreeMap<_, _> = of_velocities(system, (layout, angles), links).into_iter().collect();
         let mut rows = rows;
         rows.extend(own.keys().map(|&row| (row, Graph::ZERO)));
         rows.sort_unstable_by_key(|&(row, _)| row);
@@ -209,6 +252,7 @@ impl Closure {
         system: &mut System,
         phi: &[ExprId],
         (layout, angles): (&Layout, &WholeAngles),
+        links: &[LinkKinematics],
     ) -> Self {
         let held = layout.determined.iter().filter_map(|known| match known.by {
             Relation::Held(row) => Some(row),
@@ -218,7 +262,7 @@ impl Closure {
         let rows: Vec<_> = self.rows.iter().chain(&self.holding).copied().collect();
         let phi: Vec<_> = rows.iter().map(|&row| phi[row]).collect();
         let phi = system.expanded(&angles.poses, &phi);
-        let own: BTreeMap<_, _> = of_velocities(system, layout, angles).into_iter().collect();
+        let own: BTreeMap<_, _> = of_velocities(system, (layout, angles), links).into_iter().collect();
         self.by_determined = vec![Vec::new(); rows.len()];
         let every = Embedding::identity(layout.n_tree_rates());
         let directions = Directions { layout, angles, embedding: &every };

@@ -141,9 +141,9 @@ impl Coordinates {
         let in_joints = maps::in_joints(system, &layout, &maximal, &determined, &angles);
         let of_joints = maps::of_joints(system, &layout, &angles);
         let by_rates = Embedding::identity(layout.n_rates).with_determined(system, &layout, &determined);
-        let closure = Closure::derive(system, rows, (&layout, &angles), &by_rates, &unit);
+        let closure = Closure::derive(system, rows, (&layout, &angles), (&by_rates, &links), &unit);
         let unheld = WholeAngles::of(system, &layout, &links, |_| false);
-        let closure = closure.with_determined(system, &textbook.kinematics.phi, (&layout, &unheld));
+        let closure = closure.with_determined(system, &textbook.kinematics.phi, (&layout, &unheld), &links);
         let loops = loops_of(system, &closure);
         let embedding = loops.embedding(&mut system.graph, &closure, layout.n_rates);
         let embedding = embedding.with_determined(system, &layout, &determined);

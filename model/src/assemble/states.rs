@@ -127,6 +127,7 @@ impl Still<'_> {
             OutputKind::Velocity(frame) | OutputKind::Inertial(frame) => {
                 self.turn(frame).rotate_back(self.body(frame.body).w)[number - 3]
             }
+            OutputKind::Relative(relative) => self.relative(&relative.frames, number),
             OutputKind::Link { force } => match &self.model.forces[*force].kind {
                 ForceKind::Link { first, second, .. } => {
                     let line = self.tip(second.0, &second.1) - self.tip(first.0, &first.1);
@@ -152,6 +153,21 @@ impl Still<'_> {
         let a = (p.conjugate() * q).matrix();
         let [about_x, about_z] = [(-a[1][2]).atan2(a[2][2]), (-a[0][1]).atan2(a[0][0])];
         [d[0], d[1], d[2], about_x, a[0][2].clamp(-1.0, 1.0).asin(), about_z]
+    }
+
+    /// A number of [`crate::Relative`].
+    fn relative(&self, frames: &[BodyFrame; 2], number: usize) -> f64 {
+        let [i, j] = frames.each_ref().map(|frame| self.body(frame.body));
+        let [p, q] = frames.each_ref().map(|frame| self.body(frame.body).p * self.turn(frame));
+        let [from, to] = frames.each_ref().map(|frame| self.tip(frame.body, &frame.point));
+        let [before, after] = frames.each_ref().map(|frame| self.tip_velocity(frame.body, &frame.point));
+        let (carrier, line) = (i.p.rotate(i.w), to - from);
+        match number {
+            0..3 => p.rotate_back(line)[number],
+            3..12 => (p.conjugate() * q).matrix()[number / 3 - 1][number % 3],
+            12..15 => p.rotate_back(after - before - carrier.cross(&line))[number - 12],
+            _ => p.rotate_back(j.p.rotate(j.w) - carrier)[number - 15],
+        }
     }
 
     fn turn(&self, frame: &BodyFrame) -> Quaternion {

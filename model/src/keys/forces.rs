@@ -155,9 +155,9 @@ pub static FORCE: Table = Table::new(
 pub static FORCE_END: Table =
     Table::new("end of a link", "A point of a body.", &[reference("body", "name of the body"), POINT]);
 
-/// `first` and `second` of a bushing.
+/// `first` and `second` of a bushing, and of an output of two frames.
 pub static BUSHING_END: Table = Table::new(
-    "end of a bushing",
+    "frame",
     "A frame of a body.",
     &[
         reference("body", "name of the body"),

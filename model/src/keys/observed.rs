@@ -1,8 +1,8 @@
 //! What is computed besides the motion, and what acts on it from instant to instant.
 
 use super::{
-    KIND, Key, ON_COORDINATE, ON_JOINT, POINT, Table, Value, flag, kind, name, number, orientation, plain,
-    reference, strength, text, word,
+    BUSHING_END, KIND, Key, ON_COORDINATE, ON_JOINT, POINT, Table, Value, flag, kind, name, number,
+    orientation, plain, reference, strength, table, text, word,
 };
 
 /// Of a frame in a body.
@@ -31,6 +31,14 @@ pub static OUTPUT: Table = Table::new(
         "inertial",
         "what an inertial sensor reads: specific force Aᵀ(r̈ − g) (m/s²) and angular rate (rad/s)",
         FRAME,
+    ),
+    kind(
+        "relative",
+        "the second frame seen from the first, by its axes: place (m), direction cosines, velocity (m/s) and angular velocity (rad/s)",
+        &[
+            table("first", &BUSHING_END, "a table of `body`, `point` and `orientation`").required(),
+            table("second", &BUSHING_END, "likewise").required(),
+        ],
     ),
     kind(
         "reaction",

@@ -89,6 +89,9 @@ impl Kinematics {
         };
         let ends = |&joint: &usize| [self.joints[joint].first.body, self.joints[joint].second.body];
         let mut bodies: Vec<usize> = joints.iter().flat_map(ends).collect();
+        if let Equation::Rows(RowOwner::Coupler(k)) = *equation {
+            bodies.extend(self.couplers[k].bodies());
+        }
         bodies.sort_unstable();
         bodies.dedup();
         bodies
@@ -104,7 +107,7 @@ impl Kinematics {
             }
             Equation::Rows(RowOwner::Coupler(k)) => {
                 let coupler = &self.couplers[k];
-                vec![coupler.lag(coordinate)]
+                vec![coupler.lag(coordinate, poses)]
             }
             Equation::Rows(RowOwner::Driver(k)) => {
                 vec![coordinate(self.drivers[k].coordinate) - self.drivers[k].value.re]

@@ -7,19 +7,24 @@ mod equation;
 mod exact;
 mod geometry;
 mod joint;
+mod pair;
 mod size;
 
 pub(crate) use equation::Equation;
 pub(crate) use exact::{cross, exact};
 pub(crate) use geometry::{Pose, dot};
 pub(crate) use joint::JointGeometry;
+use pair::Pair;
 
 use nalgebra::{DMatrix, DVector};
 use num_dual::Dual64;
 
 use crate::scalar::Scalar;
 use crate::sight::Sight;
-use crate::{CoordinateKind, Coupling, JointCoordinate, Model, Quaternion, Row, RowOwner, Seen, Support};
+use crate::{
+    CoordinateKind, Coupling, JointCoordinate, Model, OutputKind, Quaternion, Relative, Row, RowOwner, Seen,
+    Support,
+};
 
 /// Φ, its derivatives and the joints' coordinates of a model at one instant.
 ///
@@ -77,6 +82,8 @@ enum Place {
 struct CouplerNumbers {
     second: Option<JointCoordinate>,
     by: Numbers,
+    /// The outputs that it sees, by their indices.
+    pairs: Vec<(usize, Pair)>,
 }
 
 /// What a coupler's second coordinate is to be, or what a constraint has to be zero.
@@ -214,27 +221,48 @@ impl CouplerNumbers {
             }
             Coupling::Rate(formula) => Numbers::Rate(Sight::new(model, formula)),
         };
-        Self { second: coupler.second, by }
+        let pair = |output: usize| match &model.outputs[output].kind {
+            OutputKind::Relative(relative) => Some((output, Pair::new(model, relative))),
+            _ => None,
+        };
+        let pairs = coupler.outputs().into_iter().filter_map(pair).collect();
+        Self { second: coupler.second, by, pairs }
     }
 
     /// The second coordinate less what it is to be, or what is to be zero; of a row of velocities what changes at the
     /// rate of the formula, which is zero now.
-    fn lag<D: Scalar>(&self, coordinate: impl Fn(JointCoordinate) -> D) -> D {
+    fn lag<D: Scalar>(&self, coordinate: impl Fn(JointCoordinate) -> D, poses: &[Pose<D>]) -> D {
+        let places: Vec<_> = self.pairs.iter().map(|(output, pair)| (*output, pair.places(poses))).collect();
+        let of = |output: usize| places.iter().find(|(known, _)| *known == output).map(|(_, places)| places);
         let second = self.second.map(&coordinate);
         match &self.by {
             Numbers::Linear { first, ratio, offset } => {
                 second.unwrap_or_else(D::zero) - coordinate(*first) * *ratio - *offset
             }
             Numbers::Formula(formula) => {
-                let value = formula.value(&coordinate, D::zero());
+                let value = formula.of(|seen| match seen {
+                    Seen::Coordinate(on) => coordinate(on),
+                    Seen::Output { output, number } if number < Relative::N_PLACES => {
+                        of(output).map_or_else(D::zero, |places| places[number])
+                    }
+                    _ => D::zero(),
+                });
                 second.map_or(value, |second| second - value)
             }
             Numbers::Rate(formula) => D::growing(formula.of(|seen| match seen {
                 Seen::Coordinate(on) => coordinate(on).re(),
                 Seen::Rate(on) => coordinate(on).rate(),
+                Seen::Output { output, number } => {
+                    of(output).map_or(0.0, |places| Pair::number(places, number))
+                }
                 _ => 0.0,
             })),
         }
+    }
+
+    /// The bodies whose frames it sees.
+    fn bodies(&self) -> impl Iterator<Item = usize> {
+        self.pairs.iter().flat_map(|(_, pair)| pair.bodies())
     }
 
     /// All coordinates of its row.

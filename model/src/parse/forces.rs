@@ -5,7 +5,7 @@ use super::section::{Item, Section};
 use super::{laws, outputs, references, tables};
 use crate::keys::Kind;
 use crate::validate::{Owner, Side};
-use crate::{BodyFrame, Bushing, BushingLaw, Force, ForceKind, JointCoordinate, LoadFrame, Number, StopSide};
+use crate::{Bushing, BushingLaw, Force, ForceKind, JointCoordinate, LoadFrame, Number, StopSide};
 
 /// All tables of forces, whose names others refer to.
 pub(super) fn open<'t>(reader: &mut Reader<'_>, page: &Section<'t>) -> Vec<(Section<'t>, String)> {
@@ -118,7 +118,9 @@ impl<'s> Reading<'_, '_, 's> {
     }
 
     fn bushing(&mut self) -> ForceKind {
-        let [first, second] = Side::BOTH.map(|side| self.frame(side));
+        let [first, second] = Side::BOTH.map(|side| {
+            outputs::frame_at(self.reader, &self.section, (Owner::ForceEnd(self.index, side), side))
+        });
         let own = ["damping", "force", "torsion", "torsional_damping", "torque"];
         if !own.iter().any(|key| self.section.has(key)) {
             self.section.require(self.reader, "stiffness");
@@ -130,16 +132,6 @@ impl<'s> Reading<'_, '_, 's> {
         let along = law(["stiffness", "damping", "force"]);
         let about = law(["torsion", "torsional_damping", "torque"]);
         ForceKind::Bushing(Box::new(Bushing { first, second, along, about }))
-    }
-
-    /// A frame of a body.
-    fn frame(&mut self, side: Side) -> BodyFrame {
-        match self.inner(side) {
-            Some(end) => outputs::frame(self.reader, &end),
-            None => {
-                BodyFrame { body: references::NOTHING, point: [0; 3].map(Number::integer), orientation: None }
-            }
-        }
     }
 
     /// What acts by the slopes of a formula, which must not be zero for want of names.

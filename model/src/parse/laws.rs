@@ -79,7 +79,10 @@ fn known(reader: &Reader<'_>, item: Item<'_>) -> Known {
 fn refused(kinds: &[OutputKind], what: &str, (name, seen): (&str, Seen)) -> Option<[String; 3]> {
     let Seen::Output { output, number } = seen else { return None };
     let is_early = match kinds.get(output)? {
-        OutputKind::Pose(_) | OutputKind::Velocity(_) | OutputKind::State { .. } => true,
+        OutputKind::Pose(_)
+        | OutputKind::Velocity(_)
+        | OutputKind::Relative(_)
+        | OutputKind::State { .. } => true,
         OutputKind::Inertial(_) => number >= 3,
         OutputKind::Link { .. } => number >= 1,
         OutputKind::Bushing { .. } => number < 6,

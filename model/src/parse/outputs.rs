@@ -6,8 +6,8 @@ use super::lookup::wrong_within;
 use super::reader::Reader;
 use super::section::{Item, Section};
 use super::{references, tables};
-use crate::validate::Owner;
-use crate::{BodyFrame, Formula, Output, OutputKind, Seen};
+use crate::validate::{Owner, Side};
+use crate::{BodyFrame, Formula, Number, Output, OutputKind, Relative, Seen};
 
 /// Outputs that are formulas, by their places: they are read once all names are known.
 pub(super) type Pending<'t> = Vec<(usize, Item<'t>, &'t str)>;
@@ -22,7 +22,7 @@ pub(super) fn read<'t>(reader: &mut Reader<'_>, page: &Section<'t>) -> (Vec<Outp
             let of = section.find(reader, "of").and_then(|item| Some((index, item, item.text(reader)?)));
             pending.extend(of);
         }
-        Output { name, kind: output(reader, &section, kind) }
+        Output { name, kind: output(reader, (&section, index), kind) }
     });
     (outputs.collect(), pending)
 }
@@ -49,7 +49,7 @@ pub(super) fn read_formulas(reader: &mut Reader<'_>, pending: Pending<'_>, outpu
     }
 }
 
-fn output(reader: &mut Reader<'_>, section: &Section<'_>, kind: &str) -> OutputKind {
+fn output(reader: &mut Reader<'_>, (section, place): (&Section<'_>, usize), kind: &str) -> OutputKind {
     let mut index = |what| references::index(reader, section, what);
     match kind {
         "reaction" => OutputKind::Reaction { joint: index("joint") },
@@ -68,7 +68,27 @@ fn output(reader: &mut Reader<'_>, section: &Section<'_>, kind: &str) -> OutputK
         "velocity" => OutputKind::Velocity(frame(reader, section)),
         "acceleration" => OutputKind::Acceleration(frame(reader, section)),
         "inertial" => OutputKind::Inertial(frame(reader, section)),
+        "relative" => {
+            let frames =
+                Side::BOTH.map(|side| frame_at(reader, section, (Owner::OutputEnd(place, side), side)));
+            OutputKind::Relative(Box::new(Relative { frames }))
+        }
         _ => OutputKind::Pose(frame(reader, section)),
+    }
+}
+
+/// The frame in a table under `first` or `second`.
+pub(super) fn frame_at(
+    reader: &mut Reader<'_>,
+    section: &Section<'_>,
+    (owner, side): (Owner, Side),
+) -> BodyFrame {
+    let title = format!("`{}` of {}", side.key(), section.title);
+    match section.inner(reader, side.key(), (owner, &title)) {
+        Some(end) => frame(reader, &end),
+        None => {
+            BodyFrame { body: references::NOTHING, point: [0; 3].map(Number::integer), orientation: None }
+        }
     }
 }
 

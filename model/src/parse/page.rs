@@ -29,7 +29,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     curves::read(reader, &page);
     let (mut bodies, point_masses): (Vec<_>, Vec<_>) = bodies::read(reader, &page).into_iter().unzip();
     let joints = joints::read(reader, &page);
-    let couplers = couplings::couplers(reader, &page);
+    let couplings = couplings::open(reader, &page);
     let mut drivers = couplings::drivers(reader, &page);
     let sections = forces::open(reader, &page);
     let taken = parameters.iter().map(|p| p.name.as_str()).chain(parameters::OWN_FIELDS);
@@ -52,6 +52,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     reader.visible = seen::known(reader, &outputs);
     reader.outputs = outputs.iter().map(|output| output.kind.clone()).collect();
     named_formulas::read(reader, &page);
+    let couplers = couplings::couplers(reader, couplings);
     let elements = elements::read(reader, &page);
     outputs::read_formulas(reader, pending, &mut outputs);
     let mut forces = forces::read(reader, sections);

@@ -111,7 +111,7 @@ fn points(model: &mut Model, body: usize) -> Vec<&mut Vector> {
     let joints = model.joints.iter_mut().flat_map(|joint| [&mut joint.first, &mut joint.second]);
     let of_joints = joints.filter(|end| end.body == body).map(|end| &mut end.point);
     let of_forces = model.forces.iter_mut().flat_map(|force| force.kind.points_mut());
-    let of_outputs = model.outputs.iter_mut().filter_map(|output| output.kind.frame_mut());
+    let of_outputs = model.outputs.iter_mut().flat_map(|output| output.kind.frames_mut());
     let of_outputs = of_outputs.map(|frame| (frame.body, &mut frame.point));
     let others = of_forces.chain(of_outputs).filter(|(of, _)| *of == body).map(|(_, point)| point);
     of_shapes.chain(of_joints).chain(others).collect()

@@ -200,7 +200,20 @@ fn fixed_output(model: &Model, index: usize) -> Option<Problem> {
             )
         });
     }
-    let body = model.bodies.get(output.kind.frame()?.body).filter(|body| body.support == Support::Fixed)?;
+    if let OutputKind::Relative(relative) = &output.kind {
+        let [first, second] = relative.frames.each_ref().map(|frame| frame.body);
+        let is_still = |body: usize| model.bodies.get(body).is_none_or(|body| body.support == Support::Fixed);
+        return (first == second || is_still(first) && is_still(second)).then(|| {
+            Problem::new(
+                Place { owner: Owner::OutputEnd(index, Side::Second), key: "body" },
+                format!("the frames of output `{}` do not move against one another", output.name),
+                "never changes",
+                "name a body that moves, seen from another",
+            )
+        });
+    }
+    let [frame] = output.kind.frames() else { return None };
+    let body = model.bodies.get(frame.body).filter(|body| body.support == Support::Fixed)?;
     Some(Problem::new(
         Place { owner: Owner::Output(index), key: "body" },
         format!("output `{}` is of body `{}`, which is fixed", output.name, body.name),

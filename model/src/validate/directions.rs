@@ -22,11 +22,15 @@ pub(super) fn of_start(model: &Model, index: usize, joint: &Joint) -> Option<Pro
     zero_parameters(model, parameters, Place::joint(index, "orientation"), &format!("joint `{}`", joint.name))
 }
 
-/// The orientation of an output's frame.
+/// The orientations of an output's frames.
 pub(super) fn of_output(model: &Model, index: usize, output: &Output) -> Option<Problem> {
-    let parameters = output.kind.frame()?.orientation.as_ref()?;
-    let place = Place { owner: Owner::Output(index), key: "orientation" };
-    zero_parameters(model, parameters, place, &format!("output `{}`", output.name))
+    let frames = output.kind.frames();
+    let problem = |(side, frame): (Side, &BodyFrame)| {
+        let owner = if frames.len() == 1 { Owner::Output(index) } else { Owner::OutputEnd(index, side) };
+        let place = Place { owner, key: "orientation" };
+        zero_parameters(model, frame.orientation.as_ref()?, place, &format!("output `{}`", output.name))
+    };
+    Side::BOTH.into_iter().zip(frames).find_map(problem)
 }
 
 /// The orientations of a bushing's frames.

@@ -60,6 +60,8 @@ pub(crate) enum Owner {
     Driver(usize),
     Force(usize),
     ForceEnd(usize, Side),
+    /// A side of an output of two frames.
+    OutputEnd(usize, Side),
     Element(usize),
     Output(usize),
     Curve(usize),
@@ -129,6 +131,7 @@ impl Place {
             (Owner::End(joint, _), "") => Some(Self::joint(joint, "")),
             (Owner::CouplerEnd(index, _), "") => Some(Self { owner: Owner::Coupler(index), key: "" }),
             (Owner::ForceEnd(index, _), "") => Some(Self { owner: Owner::Force(index), key: "" }),
+            (Owner::OutputEnd(index, _), "") => Some(Self { owner: Owner::Output(index), key: "" }),
             (Owner::Shape(body, _), "") => Some(Self::body(body, "shape")),
             (Owner::Driven(body), "") => Some(Self::body(body, "driven")),
             (Owner::PointMass(body, _), "") => Some(Self::body(body, "point_mass")),

@@ -69,7 +69,7 @@ impl Model {
             }
         }
         let frames =
-            self.outputs.iter().filter_map(|output| output.kind.frame()).chain(self.frames_of_forces());
+            self.outputs.iter().flat_map(|output| output.kind.frames()).chain(self.frames_of_forces());
         rules.extend(frames.filter_map(|frame| frame.orientation.as_ref()).map(|p| NotZero(p)));
         rules.extend(self.couplers.iter().flat_map(|coupler| Ranged::of_coupler(0, coupler).rules()));
         rules.extend(self.forces.iter().flat_map(|force| Ranged::of_force(0, force).rules()));

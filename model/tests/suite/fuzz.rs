@@ -235,6 +235,9 @@ fn check_references(model: &Model) {
             | OutputKind::Velocity(ref frame)
             | OutputKind::Acceleration(ref frame)
             | OutputKind::Inertial(ref frame) => assert!(frame.body < model.bodies.len()),
+            OutputKind::Relative(ref relative) => {
+                assert!(relative.frames.iter().all(|frame| frame.body < model.bodies.len()));
+            }
             OutputKind::Reaction { joint } => assert!(joint < model.joints.len()),
             OutputKind::Driver { driver } => assert!(driver < model.drivers.len()),
             OutputKind::Coupler { coupler } => assert!(coupler < model.couplers.len()),

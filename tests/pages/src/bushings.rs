@@ -49,7 +49,7 @@ impl Page {
 }
 
 /// Point and orientation of a frame, of which either may be left out.
-fn frame(dice: &mut Dice) -> String {
+pub fn frame(dice: &mut Dice) -> String {
     let mut keys = String::new();
     if dice.once_in(2) {
         let point = dice.point();

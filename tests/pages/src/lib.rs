@@ -22,6 +22,7 @@ mod laws;
 mod linkages;
 mod loops;
 mod page;
+mod pairs;
 mod ready;
 mod vector;
 
@@ -57,6 +58,7 @@ fn text(mut page: Page, seed: u64) -> String {
         }
     }
     page.rollings(seed);
+    page.pairs(seed);
     let places = loops::places(&page.read());
     page.forces(&places);
     page.outputs();

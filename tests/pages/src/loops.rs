@@ -68,19 +68,13 @@ impl Page {
             self.joints[own.0].taken.push(own.1);
             self.joints[own.0].starts.retain(|(key, _)| !["rate", "rates"].contains(key));
             let coordinates = self.coordinates();
-            let is_alone: Vec<_> =
-                self.joints.iter().map(|joint| joint.kind.coordinates.len() == 1).collect();
-            let shown = |(joint, coordinate): (usize, &str)| match is_alone[joint] {
-                true => format!("j{joint}"),
-                false => format!("j{joint}.{coordinate}"),
-            };
-            let mut text = format!("{} rate", shown(own));
+            let mut text = format!("{} rate", self.shown(own));
             for _ in 0..1 + dice.below(5) {
                 let [with, by] = [(); 2].map(|()| coordinates[dice.below(coordinates.len())]);
                 if with == own {
                     continue;
                 }
-                let [with, by, factor] = [shown(with), shown(by), dice.number()];
+                let [with, by, factor] = [self.shown(with), self.shown(by), dice.number()];
                 text += &match dice.below(4) {
                     0 => format!(" - {factor}*({with} rate)"),
                     1 => format!(" + sin({by})*({with} rate)/2"),
@@ -101,8 +95,16 @@ impl Page {
         }
     }
 
+    /// A coordinate as formulas name it.
+    pub fn shown(&self, (joint, coordinate): (usize, &str)) -> String {
+        match self.joints[joint].kind.coordinates.len() {
+            1 => format!("j{joint}"),
+            _ => format!("j{joint}.{coordinate}"),
+        }
+    }
+
     /// A coordinate that nothing prescribes, if there is one and enough ways to move remain without it.
-    fn free_coordinate(&mut self) -> Option<(usize, &'static str)> {
+    pub fn free_coordinate(&mut self) -> Option<(usize, &'static str)> {
         let least = usize::from(self.is_closed);
         let is_free = |(joint, coordinate): &(usize, &str)| {
             let joint = &self.joints[*joint];
@@ -118,7 +120,7 @@ impl Page {
         *self.freedoms_of(self.joints[joint].root) -= 1;
     }
 
-    fn freedoms_of(&mut self, root: usize) -> &mut usize {
+    pub fn freedoms_of(&mut self, root: usize) -> &mut usize {
         self.freedoms.get_mut(&root).expect("a tree that has joints")
     }
 

@@ -11,7 +11,7 @@ use super::linear::Vector;
 use super::load::Load;
 use super::pose::Pose;
 use crate::field::Field;
-use gyro_model::{BodyFrame, Bushing, ForceKind, Output, OutputKind};
+use gyro_model::{Bushing, ForceKind, Output, OutputKind};
 use std::array::from_fn;
 
 /// Six numbers along the readings.
@@ -89,7 +89,7 @@ impl<F: Field> Evaluation<'_, F> {
     }
 
     /// A pose on its way.
-    fn moved(&self, pose: &Pose<F>, s: &Vector<F>, w: &Vector<F>) -> Pose<F> {
+    pub(super) fn moved(&self, pose: &Pose<F>, s: &Vector<F>, w: &Vector<F>) -> Pose<F> {
         let r = from_fn(|k| Jet::moving(pose.r.0[k].value.clone(), s.0[k].value.clone()));
         let p = self.turning(&pose.p, w);
         Pose { r: Vector(r), a: self.scope.rotation(&p), p }
@@ -97,11 +97,7 @@ impl<F: Field> Evaluation<'_, F> {
 
     /// x, y, z and the Cardan angles; `None` where these are not defined.
     fn readings_between(&self, bushing: &Bushing, poses: &[Pose<F>; 2]) -> Option<Six<F>> {
-        let [first, second] = bushing.ends();
-        let [from, to] = [(first, &poses[0]), (second, &poses[1])]
-            .map(|(frame, pose): (&BodyFrame, _)| pose.point(&self.scope.vector(&frame.point)));
-        let toward_first = poses[0].a.transposed();
-        let [x, y, z] = self.by_axes(first, &toward_first.apply(&(to - from)))?.0;
+        let [x, y, z] = self.place_between(bushing.ends(), poses.each_ref())?.0;
         let [x_of_x, x_of_y, x_of_z, y_of_z, z_of_z] = self.turned(bushing, poses)?;
         let cosine = self.scope.sqrt(&(&y_of_z * &y_of_z + &z_of_z * &z_of_z))?;
         // tan(a/2) = sin a / (1 + cos a), but at half a turn.
@@ -115,18 +111,8 @@ impl<F: Field> Evaluation<'_, F> {
 
     /// Entries of the matrix of the second frame's axes, by those of the first: xx, xy, xz, yz, zz.
     fn turned(&self, bushing: &Bushing, poses: &[Pose<F>; 2]) -> Option<[Jet<F>; 5]> {
-        let [first, second] = bushing.ends();
-        let toward_first = poses[0].a.transposed();
-        let axes = match &second.orientation {
-            Some(own) => poses[1].a.product(&self.scope.rotation(&self.scope.unit(own)?)),
-            None => poses[1].a.clone(),
-        };
-        let seen = |column: usize| {
-            let axis = Vector(from_fn(|row| axes.0[row][column].clone()));
-            self.by_axes(first, &toward_first.apply(&axis))
-        };
-        let ([x_of_x, ..], [x_of_y, ..], [x_of_z, y_of_z, z_of_z]) = (seen(0)?.0, seen(1)?.0, seen(2)?.0);
-        Some([x_of_x, x_of_y, x_of_z, y_of_z, z_of_z])
+        let [[xx, xy, xz], [_, _, yz], [_, _, zz]] = self.matrix_between(bushing.ends(), poses.each_ref())?.0;
+        Some([xx, xy, xz, yz, zz])
     }
 }
 

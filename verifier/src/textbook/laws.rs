@@ -144,9 +144,10 @@ impl<F: Field> Evaluation<'_, F> {
                 let [places, _] = self.seen_between(bushing)?;
                 places.get(number).map(|place| place.value.clone())
             }
-            kind @ (OutputKind::Pose(_) | OutputKind::Velocity(_) | OutputKind::State { .. }) => {
-                self.output(kind, &[], &[])?.get(number).cloned()
-            }
+            kind @ (OutputKind::Pose(_)
+            | OutputKind::Velocity(_)
+            | OutputKind::Relative(_)
+            | OutputKind::State { .. }) => self.output(kind, &[], &[])?.get(number).cloned(),
             _ => None,
         }
     }

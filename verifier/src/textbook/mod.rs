@@ -22,6 +22,7 @@ mod load;
 mod motion;
 mod observe;
 mod pose;
+mod relative;
 mod rows;
 mod scope;
 mod sparse;
@@ -161,7 +162,9 @@ fn bodies_of(model: &Model, owner: RowOwner) -> Vec<usize> {
         RowOwner::Joint(joint) => of_joint(joint).to_vec(),
         RowOwner::Coupler(coupler) => {
             let coupler = &model.couplers[coupler];
-            coupler.coordinates().into_iter().flat_map(|on| of_joint(on.joint)).collect()
+            let frames = coupler.outputs().into_iter().flat_map(|output| model.outputs[output].kind.frames());
+            let joints = coupler.coordinates().into_iter().flat_map(|on| of_joint(on.joint));
+            joints.chain(frames.map(|frame| frame.body)).collect()
         }
         RowOwner::Driver(driver) => of_joint(model.drivers[driver].coordinate.joint).to_vec(),
     };

@@ -115,6 +115,7 @@ impl<F: Field> Evaluation<'_, F> {
                 let felt = moving.pose.a.transposed().apply(&(linear - gravity));
                 values(self.by_axes(frame, &felt)?, &self.by_axes(frame, &moving.w)?.0)
             }
+            OutputKind::Relative(relative) => self.relative_now(relative.frames.each_ref())?,
             OutputKind::Reaction { joint } => {
                 let [force, torque] = self.reaction(*joint, lambda)?;
                 values(force, &torque.0)

@@ -7,7 +7,9 @@ use super::pose::{Path, Pose};
 use super::sparse::Sparse;
 use super::{Block, Evaluation};
 use crate::field::Field;
-use gyro_model::{Coupler, Coupling, Driver, Formula, JointCoordinate, JointKind, RowOwner, Seen};
+use gyro_model::{
+    Coupler, Coupling, Driver, Formula, JointCoordinate, JointKind, OutputKind, RowOwner, Seen,
+};
 use std::array::from_fn;
 use std::collections::BTreeMap;
 
@@ -182,6 +184,14 @@ impl<F: Field> Evaluation<'_, F> {
             let see = |seen| match seen {
                 Seen::Coordinate(on) => self.coordinate(on, poses),
                 Seen::Rate(on) => self.change(on, poses),
+                Seen::Output { output, number } => match &self.textbook.model.outputs[output].kind {
+                    OutputKind::Relative(relative) => {
+                        let frames = relative.frames.each_ref();
+                        let all = self.relative(frames, frames.map(|frame| &poses[frame.body]))?;
+                        all.get(number).cloned()
+                    }
+                    _ => None,
+                },
                 _ => None,
             };
             formula::value(self.textbook.model, &self.scope, &see, &formula.text)

@@ -97,15 +97,26 @@ pub fn vanishes(graph: &mut Graph, unit: &[Vec<ExprId>], root: ExprId) -> bool {
     expanded.is_some_and(|expanded| expanded.system.sums.iter().all(Vec::is_empty))
 }
 
+/// Whether an expression is zero but for rounding at points where the identities hold: for what the proof looks at
+/// again.
+pub fn is_zero_at_points(graph: &Graph, unit: &[Vec<ExprId>], root: ExprId) -> bool {
+    (0..3).all(|point| size(graph, unit, root, point).is_some_and(|size| size < ROUNDED))
+}
+
 /// Whether an expression has, somewhere where the identities hold, a value far beyond what rounding makes of zero.
 fn is_clearly_something(graph: &Graph, unit: &[Vec<ExprId>], root: ExprId) -> bool {
-    let draw = sample(0);
+    size(graph, unit, root, 0).is_some_and(|size| size > CLEAR)
+}
+
+/// The size of an expression at a point, as a part of the largest value on the way.
+fn size(graph: &Graph, unit: &[Vec<ExprId>], root: ExprId, point: u64) -> Option<f64> {
+    let draw = sample(point);
     let reachable = graph.reachable(&[root]);
     let known: HashSet<ExprId> = reachable.iter().copied().collect();
     let symbol = |id: &ExprId| if let Node::Symbol(symbol) = graph.node(*id) { Some(*symbol) } else { None };
     let mut on_sphere: HashMap<Symbol, f64> = HashMap::new();
     for point in unit.iter().filter(|point| point.iter().any(|id| known.contains(id))) {
-        let Some(symbols) = point.iter().map(symbol).collect::<Option<Vec<_>>>() else { return false };
+        let symbols = point.iter().map(symbol).collect::<Option<Vec<_>>>()?;
         let norm = symbols.iter().map(|&symbol| draw(symbol).powi(2)).sum::<f64>().sqrt();
         on_sphere.extend(symbols.into_iter().map(|symbol| (symbol, draw(symbol) / norm)));
     }
@@ -113,11 +124,14 @@ fn is_clearly_something(graph: &Graph, unit: &[Vec<ExprId>], root: ExprId) -> bo
     let values: Vec<f64> = evaluate(graph, &reachable, value);
     let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     // The root is reached last.
-    values.last().is_some_and(|value| value.abs() > CLEAR * largest)
+    values.last().map(|value| value.abs() / largest)
 }
 
 /// So much of the largest intermediate value is far beyond its rounding.
 const CLEAR: f64 = 1e-6;
+
+/// So much of it, or less, is rounding.
+const ROUNDED: f64 = 1e-13;
 
 /// The given points that the roots depend on, and the sines and cosines among what they depend on. No two have an atom
 /// in common, or they could replace each other's squares without end.
