@@ -51,6 +51,7 @@ mod proof;
 mod remarks;
 #[cfg(feature = "reports")]
 mod report;
+mod rolling;
 mod rounding;
 mod runs;
 mod runtime;

@@ -8,7 +8,7 @@ use crate::args::{Engine, Precision};
 use crate::failure::Failure;
 use crate::scene::Scene;
 use crate::words::{count, number, table};
-use crate::{columns, eigenvalues, equilibrium, kinks, lapse, remarks};
+use crate::{columns, eigenvalues, equilibrium, kinks, lapse, remarks, rolling};
 use gyro_model::{Model, RowOwner};
 use gyro_runner::motion::Linear;
 use gyro_runner::{
@@ -200,7 +200,8 @@ pub(crate) fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<String> {
         reasons.map(|reason| reason.to_string()).chain(passage_words(scene, &outcome.summary.statistics));
     let all = all.map(|words| format!("{words} --verify tells how far the result can be trusted."));
     let stay = kinks::stay(&scene.start.kinks, &outcome.summary);
-    all.chain(stay).chain(lapse::of_outputs(scene, &outcome.samples)).collect()
+    let of_outputs = lapse::of_outputs(scene, &outcome.samples);
+    all.chain(stay).chain(of_outputs).chain(rolling::that_lift(scene, &outcome.samples)).collect()
 }
 
 /// That steps of fixed length have passed singular poses, if they have.

@@ -25,6 +25,7 @@ mod orientation;
 mod plants;
 mod refusals;
 mod rolling;
+mod rolling_bodies;
 mod states;
 mod stops;
 mod support;

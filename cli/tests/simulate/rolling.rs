@@ -45,7 +45,11 @@ fn is_near(run: &Value, expected: &[(&str, &str, usize, f64)], options: &[&str])
 }
 
 /// By Kutta's method.
-fn kutta<const N: usize>(mut at: [f64; N], t_end: f64, slope: impl Fn([f64; N]) -> [f64; N]) -> [f64; N] {
+pub(crate) fn kutta<const N: usize>(
+    mut at: [f64; N],
+    t_end: f64,
+    slope: impl Fn([f64; N]) -> [f64; N],
+) -> [f64; N] {
     let n = 20_000;
     let h = t_end / f64::from(n);
     for _ in 0..n {

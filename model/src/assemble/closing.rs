@@ -3,7 +3,7 @@
 use super::error::AssemblyError;
 use super::guess::{Guess, Source, Told, guesses};
 use super::projection::{Configuration, Scales, System, rotation_vector, scattered};
-use super::velocity::velocities;
+use super::velocity::{given_velocity, velocities};
 use super::walk::{State, Walk, check_finite, relative, roots};
 use super::{JointStart, Move, Start, branch, side};
 use crate::kinematics::{Equation, Kinematics};
@@ -295,7 +295,21 @@ fn moves(
         add(owner, name, "position", (after.r - before.r).norm(), false);
         add(owner, name, "orientation", angle_between(before.p, after.p), true);
     }
-    let far = |m: &Move| m.amount.abs() / if m.unit == "m" { scales.size } else { 1.0 };
+    for link in tree.links.iter().filter(|link| link.attachment == crate::Attachment::Free) {
+        let body = &model.bodies[link.body];
+        let [before, after] = states.map(|states| states[link.body]);
+        let mut add = |coordinate, amount, unit| {
+            let (owner, name) = (RowOwner::Body(link.body), body.name.clone());
+            moves.push(Move { owner, name, coordinate, amount, unit });
+        };
+        if given_velocity(body) {
+            add("velocity", (after.s - before.s).norm(), "m/s");
+        }
+        if body.angular_velocity.is_some() {
+            add("angular velocity", (after.w - before.w).norm(), "rad/s");
+        }
+    }
+    let far = |m: &Move| m.amount.abs() / if m.unit.starts_with("m") { scales.size } else { 1.0 };
     moves.retain(|m| far(m) > MOVED);
     moves.sort_by(|a, b| far(b).total_cmp(&far(a)));
     moves

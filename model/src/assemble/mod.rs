@@ -72,11 +72,11 @@ pub struct Move {
     pub owner: RowOwner,
     /// Its name.
     pub name: String,
-    /// The joint's coordinate, or `"orientation"` or `"position"`.
+    /// The joint's coordinate, or `"orientation"`, `"position"`, `"velocity"` or `"angular velocity"`.
     pub coordinate: &'static str,
     /// How far: with its sign for a scalar coordinate, a distance or an angle otherwise.
     pub amount: f64,
-    /// Its unit: `"rad"` or `"m"`.
+    /// Its unit: `"rad"`, `"m"`, `"m/s"` or `"rad/s"`.
     pub unit: &'static str,
 }
 

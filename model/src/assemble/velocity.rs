@@ -7,7 +7,7 @@ use super::error::AssemblyError;
 use super::guess::Guess;
 use super::projection::{Configuration, Scales, nearest_solution, scale_rows_and_columns};
 use crate::kinematics::{Equation, Kinematics};
-use crate::{JointCoordinate, JointKind, Model, Quaternion, RowOwner, RowUnit, Support};
+use crate::{Body, JointCoordinate, JointKind, Model, Number, Quaternion, RowOwner, RowUnit, Support};
 
 /// What a rate that the model file gives may be missed by, as a part of what its equation adds up: a model file rounds
 /// its numbers. The rows of Φ are met to [`START_TOLERANCE`].
@@ -30,9 +30,23 @@ pub(super) fn velocities(
     at: &Configuration,
     from: &[f64],
 ) -> Result<Vec<f64>, AssemblyError> {
+    // What free bodies are given stays as long as all else can be met.
+    match met(model, kinematics, scales, (guesses, at, from), free(model)) {
+        Err(_) => met(model, kinematics, scales, (guesses, at, from), Rates::none(model)),
+        found => found,
+    }
+}
+
+fn met(
+    model: &Model,
+    kinematics: &Kinematics,
+    scales: &Scales,
+    (guesses, at, from): (&[Guess], &Configuration, &[f64]),
+    of_free: Rates,
+) -> Result<Vec<f64>, AssemblyError> {
     let rows = rows(kinematics, at);
     let n_rows = rows.owners.len();
-    let all = rows.and(given(model, kinematics, guesses, at)).scaled(scales);
+    let all = rows.and(given(model, kinematics, guesses, at)).and(of_free).scaled(scales);
     let from = DVector::from_column_slice(from).component_div(&scales.columns);
     let (rows, given) = (all.first(n_rows), all.after(n_rows));
     let mut found = nearest_solution(&all.matrix, &all.right, &from);
@@ -95,25 +109,53 @@ fn given(model: &Model, kinematics: &Kinematics, guesses: &[Guess], at: &Configu
 
 /// The angular velocities that the model file gives to bodies which are not free.
 fn spins(model: &Model) -> Rates {
-    let moving_bodies = model.coordinate_bodies();
-    let wanted =
-        moving_bodies.iter().enumerate().filter(|(_, body)| model.bodies[**body].support == Support::Moving);
-    let wanted: Vec<(usize, usize, [f64; 3])> = wanted
-        .filter_map(|(moving_body, &body)| {
-            let w = model.bodies[body].angular_velocity.as_ref()?;
-            Some((moving_body, body, model.values(w)))
-        })
-        .collect();
-    let mut matrix = DMatrix::zeros(3 * wanted.len(), 6 * moving_bodies.len());
-    for (k, (moving_body, ..)) in wanted.iter().enumerate() {
-        matrix.view_mut((3 * k, 6 * moving_body + 3), (3, 3)).fill_with_identity();
-    }
-    let right = DVector::from_vec(wanted.iter().flat_map(|(.., w)| *w).collect());
-    let owners = wanted.iter().flat_map(|(_, body, _)| [(RowOwner::Body(*body), RowUnit::Pure); 3]).collect();
-    Rates { matrix, right, owners }
+    Rates::of_bodies(model, |body| {
+        let spin = (body.support == Support::Moving).then_some(body.angular_velocity.as_ref()).flatten();
+        vec![(RowUnit::Pure, spin)]
+    })
+}
+
+/// The velocities and angular velocities of free bodies.
+fn free(model: &Model) -> Rates {
+    Rates::of_bodies(model, |body| {
+        let is_free = body.support == Support::Free;
+        let velocity = (is_free && given_velocity(body)).then_some(&body.velocity);
+        let spin = is_free.then_some(body.angular_velocity.as_ref()).flatten();
+        vec![(RowUnit::Length, velocity), (RowUnit::Pure, spin)]
+    })
+}
+
+/// Whether the model file gives it a velocity: zero is what it has without one.
+pub(super) fn given_velocity(body: &Body) -> bool {
+    !body.velocity.iter().all(Number::is_zero)
 }
 
 impl Rates {
+    fn none(model: &Model) -> Self {
+        Self::of_bodies(model, |_| Vec::new())
+    }
+
+    /// Velocities of bodies with coordinates, as they are.
+    fn of_bodies<'m>(
+        model: &'m Model,
+        given: impl Fn(&'m Body) -> Vec<(RowUnit, Option<&'m [Number; 3]>)>,
+    ) -> Self {
+        let moving_bodies = model.coordinate_bodies();
+        let wanted = moving_bodies.iter().enumerate().flat_map(|(moving_body, &body)| {
+            let all = given(&model.bodies[body]).into_iter();
+            all.filter_map(move |(unit, numbers)| Some((moving_body, body, unit, model.values(numbers?))))
+        });
+        let wanted: Vec<_> = wanted.collect();
+        let mut matrix = DMatrix::zeros(3 * wanted.len(), 6 * moving_bodies.len());
+        for (k, (moving_body, _, unit, _)) in wanted.iter().enumerate() {
+            let first = 6 * moving_body + if *unit == RowUnit::Length { 0 } else { 3 };
+            matrix.view_mut((3 * k, first), (3, 3)).fill_with_identity();
+        }
+        let right = DVector::from_vec(wanted.iter().flat_map(|(.., values)| *values).collect());
+        let owners = wanted.iter().flat_map(|(_, body, unit, _)| [(RowOwner::Body(*body), *unit); 3]);
+        Self { matrix, right, owners: owners.collect() }
+    }
+
     /// Both sets of equations, one after the other.
     fn and(self, other: Self) -> Self {
         let (above, below) = (self.owners.len(), other.owners.len());

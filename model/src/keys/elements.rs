@@ -1,8 +1,8 @@
 //! Ready elements: what each may be told. What it stands for is in `prelude.toml`.
 
 use super::{
-    COUPLER_END, FORCE_END, KIND, Key, Kind, ON_COORDINATE, ON_JOINT, POINT, Table, kind, name, number,
-    orientation, reference, strength, strengths, table, tables_of, vector, word,
+    BUSHING_END, COUPLER_END, FORCE_END, KIND, Key, Kind, ON_COORDINATE, ON_JOINT, POINT, Table, kind, name,
+    number, orientation, reference, strength, strengths, table, tables_of, vector, word,
 };
 
 const SIDES: &[(&str, &str)] = &[("lower", ""), ("upper", "")];
@@ -189,4 +189,83 @@ pub static ELEMENT: Table = Table::new(
             VISCOUS,
         ],
     ),
+]);
+
+const SURFACE: Key = table(
+    "first",
+    &BUSHING_END,
+    "the surface: a table of `body`, `point` and `orientation`; a plane is the frame's x-y plane, z points away from it, \
+     the centre of a sphere is the frame's origin, the axis of a cylinder its z axis",
+)
+.required();
+const ON_IT: Key =
+    table("second", &FORCE_END, "what rolls: a table of `body` and of its centre, `point`").required();
+const RADIUS: Key = number("radius", "m", "").positive("nothing would roll").required();
+const OUTER: Key = number("outer", "m", "radius of the surface").positive("there would be none").required();
+const GRIPS: &[(&str, &str)] = &[
+    ("both", "it does not slip"),
+    ("along", "it slips across"),
+    ("across", "it slips along"),
+    ("none", "it slides without friction"),
+];
+const GRIP: Key = word("grip", GRIPS, "in which directions it does not slip").or("\"both\"");
+const AXIS: Key = vector("axis", "", "of the body's frame, about which it is round").or("[0, 1, 0]");
+
+/// `[[rolling]]`.
+pub static ROLLING: Table = Table::new(
+    "rolling",
+    "A body that touches a surface and rolls on it: rows of positions and of velocities.",
+    &[name("name, with which the names of its parts begin"), KIND],
+)
+.of_kinds(&[
+    kind(
+        "disc",
+        "a wheel with a sharp rim on a plane; along is where it rolls, across is along its axis",
+        &[SURFACE, ON_IT, RADIUS, AXIS, GRIP],
+    ),
+    kind(
+        "torus",
+        "a wheel with a round rim on a plane, likewise",
+        &[
+            SURFACE,
+            ON_IT,
+            number("radius", "m", "from its axis to the centre of the rim").positive("").required(),
+            number("rim", "m", "radius of the rim").positive("it would be a disc").required(),
+            AXIS,
+            GRIP,
+        ],
+    ),
+    kind("sphere", "a ball on a plane; along is x of the surface, across is y", &[SURFACE, ON_IT, RADIUS, GRIP]),
+    kind(
+        "cylinder",
+        "a roller that touches a plane along a line; along is where it rolls, across is along its axis; that it does not \
+         slip in either keeps it from turning about the normal, too",
+        &[SURFACE, ON_IT, RADIUS, AXIS, GRIP],
+    ),
+    kind(
+        "skate",
+        "an edge on a plane, at a point of the body; along is where it points",
+        &[
+            SURFACE,
+            ON_IT,
+            vector("axis", "", "of the body's frame, along the edge").or("[1, 0, 0]"),
+            word("grip", GRIPS, "in which directions it does not slip").or("\"across\""),
+        ],
+    ),
+    kind(
+        "sphere_in_sphere",
+        "a ball in a hollow sphere; along and across are x and y of the surface at its lowest point, where z is normal",
+        &[SURFACE, ON_IT, RADIUS, OUTER, GRIP],
+    ),
+    kind(
+        "sphere_on_sphere",
+        "a ball on a sphere; along and across are x and y of the surface at its top, where z is normal",
+        &[SURFACE, ON_IT, RADIUS, OUTER, GRIP],
+    ),
+    kind(
+        "sphere_in_cylinder",
+        "a ball in a hollow cylinder; along is the cylinder's axis, across is around it",
+        &[SURFACE, ON_IT, RADIUS, OUTER, GRIP],
+    ),
+    kind("sphere_on_cylinder", "a ball on a cylinder, likewise", &[SURFACE, ON_IT, RADIUS, OUTER, GRIP]),
 ]);

@@ -2,7 +2,7 @@
 
 use super::{
     BODY, CONSTRAINT, CONTACT, CONTROLLER, COUPLER, CURVE, DRIVER, ELEMENT, EVENT, FORCE, FORMULA, JOINT,
-    Key, OUTPUT, STATE, Table, Value, flag, name, number, plain, table, tables, text, vector, word,
+    Key, OUTPUT, ROLLING, STATE, Table, Value, flag, name, number, plain, table, tables, text, vector, word,
 };
 
 /// The whole model file.
@@ -53,6 +53,7 @@ pub static FILE: Table = Table::new(
             &FORCE,
             "one `[[force]]` a spring, damper, friction, stop, motor, link, load, potential or dissipation",
         ),
+        tables(&ROLLING, "one `[[rolling]]` a wheel, ball, roller or skate on a surface"),
         tables(&ELEMENT, "one `[[element]]` a motor, cylinder, propeller or the like, ready made"),
         tables(&CURVE, "one `[[curve]]` a curve of a table, or of points, that formulas call"),
         tables(&FORMULA, "one `[[formula]]` a formula that has a name"),

@@ -12,8 +12,8 @@ mod joints;
 mod observed;
 
 pub use bodies::{BODY, DRIVEN, ELEMENTS, POINT_MASS, ROTATION, SHAPE};
-pub use elements::ELEMENT;
 pub(crate) use elements::lacking;
+pub use elements::{ELEMENT, ROLLING};
 pub use file::{ATTRACTION, FILE, GENERATE, INPUT, MOTION, SIMULATION, SINUSOID};
 pub use forces::{BUSHING_END, FORCE, FORCE_END};
 pub use joints::{CONSTRAINT, COUPLER, COUPLER_END, DRIVER, JOINT, JOINT_END};

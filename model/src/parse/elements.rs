@@ -1,4 +1,4 @@
-//! What ready elements are told. What they stand for is read with the forces and states of the model file.
+//! What ready elements and rolling bodies are told. What they stand for is read with the forces and states of the model file.
 
 use super::numbers::{number, vector};
 use super::reader::Reader;
@@ -10,7 +10,10 @@ use crate::{Element, Number};
 
 /// Reads all elements.
 pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Element> {
-    let sections = tables::each(reader, page, "element", Owner::Element).into_iter().enumerate();
+    let mut sections = tables::each(reader, page, "element", Owner::Element);
+    let before = sections.len();
+    sections.extend(tables::each(reader, page, "rolling", |index| Owner::Element(before + index)));
+    let sections = sections.into_iter().enumerate();
     sections.map(|(index, (section, name))| element(reader, section, (index, name))).collect()
 }
 

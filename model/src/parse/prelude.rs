@@ -1,4 +1,5 @@
-//! Ready elements: forces, states and outputs that stand in `prelude.toml`, put into a model file in place of each.
+//! Ready elements and rolling bodies: forces, states, rows and outputs that stand in `prelude.toml`, put into a model
+//! file in place of each.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -7,7 +8,7 @@ use toml::Spanned;
 use toml::de::{DeArray, DeString, DeTable, DeValue};
 
 use crate::JointKind;
-use crate::keys::{ELEMENT, Kind, lacking};
+use crate::keys::{self, ELEMENT, Kind, ROLLING, lacking};
 
 /// What each kind stands for.
 pub(super) const PRELUDE: &str = include_str!("../prelude.toml");
@@ -18,14 +19,22 @@ type Table<'t> = DeTable<'t>;
 /// One that cannot be read stands for nothing.
 pub(super) fn expanded<'t>(file: &Table<'t>) -> (Table<'t>, Vec<Range<usize>>) {
     let (mut whole, mut places) = (file.clone(), Vec::new());
-    let elements = file.get("element").and_then(|value| value.get_ref().as_array());
-    let Some(elements) = elements else { return (whole, places) };
+    let of = |keys: &'static keys::Table| {
+        let elements = file.get(keys.name).and_then(|value| value.get_ref().as_array());
+        let tables = elements.into_iter().flat_map(|elements| elements.iter());
+        tables.filter_map(move |element| Some((keys, element.get_ref().as_table()?)))
+    };
+    let mut elements = of(&ELEMENT).chain(of(&ROLLING)).peekable();
+    if elements.peek().is_none() {
+        return (whole, places);
+    }
     let prelude = DeTable::parse(PRELUDE).expect("the prelude is TOML");
-    for table in elements.iter().filter_map(|element| element.get_ref().as_table()) {
+    for (keys, table) in elements {
         places.extend(table.values().map(Spanned::span));
-        let Some(element) = Expansion::new(file, table) else { continue };
-        let Some(parts) = prelude.get_ref().get(element.kind.word) else { continue };
-        for (what, parts) in parts.get_ref().as_table().into_iter().flatten() {
+        let Some(element) = Expansion::new(file, keys, table) else { continue };
+        let parts = [keys.name, element.kind.word].map(|name| prelude.get_ref().get(name));
+        let parts = parts.into_iter().flatten().filter_map(|parts| parts.get_ref().as_table());
+        for (what, parts) in parts.flatten() {
             let place = element.place.clone();
             let all = whole
                 .entry(Spanned::new(place.clone(), Cow::Owned(what.get_ref().to_string())))
@@ -39,7 +48,7 @@ pub(super) fn expanded<'t>(file: &Table<'t>) -> (Table<'t>, Vec<Range<usize>>) {
     (whole, places)
 }
 
-/// The key of the prelude that says which key, or which word of one, an element must have for a part to be there.
+/// The key of the prelude that says which key, or which words of one, an element must have for a part to be there.
 const GIVEN: &str = "given";
 
 /// The key of the prelude that says of which list each two neighbours have a part.
@@ -62,8 +71,8 @@ struct Expansion<'a, 't> {
 }
 
 impl<'a, 't> Expansion<'a, 't> {
-    fn new(file: &'a Table<'t>, table: &'a Table<'t>) -> Option<Self> {
-        let kind = ELEMENT.kind(table.get("kind")?.get_ref().as_str()?)?;
+    fn new(file: &'a Table<'t>, keys: &keys::Table, table: &'a Table<'t>) -> Option<Self> {
+        let kind = keys.kind(table.get("kind")?.get_ref().as_str()?)?;
         let name = table.get("name")?;
         let expansion =
             Self { file, table, kind, name: name.get_ref().as_str()?, place: name.span(), pair: None };
@@ -87,9 +96,12 @@ impl<'a, 't> Expansion<'a, 't> {
     fn parts(&self, part: &Table<'_>) -> Vec<Spanned<DeValue<'t>>> {
         let text = |key: &str| part.get(key).and_then(|value| value.get_ref().as_str());
         let has = |given: &str| {
-            let (key, word) = given.split_once('=').map_or((given, None), |(key, word)| (key, Some(word)));
-            let value = self.table.get(key);
-            value.is_some_and(|value| word.is_none() || value.get_ref().as_str() == word)
+            let Some((key, words)) = given.split_once('=') else { return self.table.contains_key(given) };
+            let word = match self.table.get(key) {
+                Some(value) => value.get_ref().as_str(),
+                None => self.kind.key(key).map(|key| key.default.trim_matches('"')),
+            };
+            word.is_some_and(|word| words.split('|').any(|one| one == word))
         };
         if text(GIVEN).is_some_and(|given| !has(given)) {
             return Vec::new();

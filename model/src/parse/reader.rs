@@ -89,7 +89,7 @@ impl<'t> Reader<'t> {
     /// Takes a name of something that stands in results and messages by its name alone: joints, couplers, drivers and
     /// outputs share their names.
     pub(super) fn take(&mut self, place: Place, span: &Range<usize>, name: &str, what: &'static str) {
-        if matches!(what, "body" | "element" | "force" | "controller" | "event" | "contact") {
+        if matches!(what, "body" | "element" | "rolling" | "force" | "controller" | "event" | "contact") {
             return;
         }
         let earlier = self.taken.get(name).filter(|(_, kind)| *kind != what).cloned();

@@ -6,7 +6,9 @@ use num_traits::{Signed, Zero};
 
 use super::inertia::is_left_out;
 use super::{Owner, ParameterRule, Place, Problem, shown};
-use crate::keys::{ATTRACTION, BODY, CONTACT, CONTROLLER, COUPLER, ELEMENT, FORCE, JOINT, Key, Range};
+use crate::keys::{
+    ATTRACTION, BODY, CONTACT, CONTROLLER, COUPLER, ELEMENT, FORCE, JOINT, Key, ROLLING, Range,
+};
 use crate::{
     Attraction, Body, Contact, Controller, Coupler, Element, Force, Joint, JointKind, Model, Number, Rational,
 };
@@ -89,7 +91,10 @@ impl<'m> Ranged<'m> {
     }
 
     pub(super) fn of_element(index: usize, element: &'m Element) -> Self {
-        let keys = ELEMENT.kind(element.kind).map_or(&[][..], |kind| kind.keys);
+        let keys = ELEMENT
+            .kind(element.kind)
+            .or_else(|| ROLLING.kind(element.kind))
+            .map_or(&[][..], |kind| kind.keys);
         let numbers = element.numbers.iter().map(|(name, number)| (*name, number));
         Self::new((Owner::Element(index), format!("element `{}`", element.name)), keys, numbers)
     }

@@ -41,6 +41,7 @@ const TABLES: [&Table; 21] = [
     &keys::SINUSOID,
     &keys::FORCE,
     &keys::ELEMENT,
+    &keys::ROLLING,
     &keys::FORMULA,
     &keys::STATE,
     &keys::OUTPUT,
