@@ -1,12 +1,11 @@
 //! Rolling bodies that the surface would have to hold back.
 
 use crate::scene::Scene;
-use gyro_model::keys::ROLLING;
 use gyro_runner::Sample;
 
 /// Rows hold with whatever force that takes: where it becomes a pull, the body would lift.
 pub(crate) fn that_lift(scene: &Scene, samples: &[Sample]) -> Vec<String> {
-    let elements = scene.model.elements.iter().filter(|element| ROLLING.kind(element.kind).is_some());
+    let elements = scene.model.elements.iter().filter(|element| element.rolls);
     let lifts = |name: &str| {
         let mut columns = scene.model.outputs.iter().flat_map(|output| {
             let n_columns = output.kind.columns().len();

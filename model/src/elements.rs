@@ -30,6 +30,8 @@ pub struct Element {
     pub name: String,
     /// The word of its kind.
     pub kind: &'static str,
+    /// Whether it is one of `[[rolling]]`.
+    pub rolls: bool,
     /// What it was told, by its keys: of a vector each number.
     pub numbers: Vec<(&'static str, Number)>,
 }

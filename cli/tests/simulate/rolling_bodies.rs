@@ -254,3 +254,114 @@ fn what_would_lift_is_told() {
     let seen: [f64; 18] = told(&then, "hill_seen");
     near([seen[2] / 1.05], [cosine], 1e-9);
 }
+
+fn run_in_forms(name: &str, page: &str, t_end: f64, check: impl Fn(&Value)) {
+    for form in FORMS {
+        let folder = Folder::new(&format!("rolling-{name}"));
+        fs::write(folder.0.join("page.toml"), page).unwrap();
+        let t_end = format!("{t_end:?}");
+        check(&json(&folder, &[&["page.toml", "--t-end", &t_end], &EXACT[..], form].concat()));
+    }
+}
+
+const GROUND: &str =
+    "format = 1\nname = \"rolls\"\ngravity = [0, 0, -9.81]\n[[body]]\nname = \"ground\"\nfixed = true\n";
+
+/// Down a plane that falls by the angle whose half has the tangent 0.15, with 2/3 of what would slide.
+#[test]
+fn a_roller_rolls_down_a_slope() {
+    let k = 0.15_f64;
+    let (sine, cosine) = (2.0 * k / (1.0 + k * k), (1.0 - k * k) / (1.0 + k * k));
+    let page = format!(
+        "{GROUND}[[body]]\nname = \"roller\"\nfree = true\nmass = 2\ninertia = [0.01, 0.01, 0.01]\n\
+         position = [{:?}, 0, {:?}]\norientation = [1, 0, {k}, 0]\n[[rolling]]\nname = \"slope\"\nkind = \"cylinder\"\n\
+         first = {{ body = \"ground\", orientation = [1, 0, {k}, 0] }}\nsecond = {{ body = \"roller\" }}\nradius = 0.1\n",
+        0.1 * sine,
+        0.1 * cosine
+    );
+    run_in_forms("slope", &page, 1.5, |run| {
+        let seen: [f64; 18] = told(run, "slope_seen");
+        let acceleration = 9.81 * sine * 2.0 / 3.0;
+        near([seen[0], seen[2], seen[12]], [acceleration * 1.125, 0.1, acceleration * 1.5], 1e-9);
+        let pushes = [number(run, "slope_normal"), number(run, "slope_along")];
+        near(pushes, [2.0 * 9.81 * cosine, -2.0 * 9.81 * sine / 3.0], 1e-8);
+    });
+}
+
+/// A wheel with a round rim on its circle: its contact moves to the side as it leans.
+#[test]
+fn a_round_rim_rolls_on_its_side() {
+    let (k, m, r, rim, turn, g) = (0.2, 2.0, 0.3, 0.08, 2.0, 9.81);
+    let (across, about) = (0.05, 0.09);
+    let (cosine, sine) = (2.0 * k / (1.0 + k * k), (1.0 - k * k) / (1.0 + k * k));
+    let speed = |spin: f64| -(r + rim * sine) * spin + rim * sine * cosine * turn;
+    // The torque about the mass centre less what turns the angular momentum.
+    let left = |spin: f64| {
+        let v = speed(spin);
+        let force = [m * (v * turn * cosine + g * sine), m * (-v * turn * sine + g * cosine)];
+        let torque = -(r + rim * sine) * force[1] + rim * cosine * force[0];
+        torque - turn * sine * (about * spin - across * turn * cosine)
+    };
+    let spin = left(0.0) / (left(0.0) - left(1.0));
+    let page = format!(
+        "{GROUND}[[body]]\nname = \"wheel\"\nfree = true\nmass = {m}\ninertia = [{across}, {about}, {across}]\n\
+         position = [0, 0, {:?}]\norientation = [1, {k}, 0, 0]\nvelocity = [{:?}, 0, 0]\n\
+         angular_velocity = [0, {spin:?}, {:?}]\n[[rolling]]\nname = \"tyre\"\nkind = \"torus\"\n\
+         first = {{ body = \"ground\" }}\nsecond = {{ body = \"wheel\" }}\nradius = {r}\nrim = {rim}\n",
+        r * sine + rim,
+        -speed(spin),
+        turn * sine
+    );
+    run_in_forms("torus", &page, PI, |run| {
+        let seen: [f64; 18] = told(run, "tyre_seen");
+        near([seen[0], seen[1], seen[2]], [0.0, 0.0, r * sine + rim], 1e-9);
+    });
+}
+
+/// A skate under a sled that is kept level is the knife of Chaplygin's sleigh.
+#[test]
+fn a_skate_is_a_knife() {
+    let sled = |edge: &str| {
+        format!(
+            "{GROUND}[[body]]\nname = \"sled\"\nmass = 2\ninertia = [0.1, 0.2, 0.25]\n[[joint]]\nname = \"ice\"\n\
+             kind = \"planar\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\nfirst = {{ body = \"ground\" }}\n\
+             second = {{ body = \"sled\", point = [-0.3, 0, 0] }}\nrate = [1, 0, 0.7]\n{edge}"
+        )
+    };
+    let knife = sled(
+        "[[constraint]]\nname = \"knife\"\nrate = \"cos(ice.angle)*(ice.y rate) - sin(ice.angle)*(ice.x rate)\"\n",
+    );
+    let skate = sled(
+        "[[rolling]]\nname = \"edge\"\nkind = \"skate\"\nfirst = { body = \"ground\" }\n\
+         second = { body = \"sled\", point = [-0.3, 0, 0] }\n",
+    );
+    let folder = Folder::new("rolling-knife");
+    fs::write(folder.0.join("page.toml"), &knife).unwrap();
+    let expected = json(&folder, &[&["page.toml", "--t-end", "1.3"], &EXACT[..]].concat());
+    let place = |run: &Value| -> [f64; 3] {
+        serde_json::from_value(run["joints"]["ice"]["position"].clone()).unwrap()
+    };
+    run_in_forms("skate", &skate, 1.3, |run| near(place(run), place(&expected), 1e-9));
+}
+
+/// A ball that grips along alone slips across without friction; one that grips in no direction slides.
+#[test]
+fn bodies_grip_as_they_are_told() {
+    for (grip, x, y) in [
+        ("both", 5.0 / 7.0, 5.0 / 7.0),
+        ("along", 5.0 / 7.0, 1.0),
+        ("across", 1.0, 5.0 / 7.0),
+        ("none", 1.0, 1.0),
+    ] {
+        let page = format!(
+            "{GROUND}[[body]]\nname = \"ball\"\nfree = true\nmass = 0.5\ninertia = [2e-3, 2e-3, 2e-3]\n\
+             position = [0, 0, 0.1]\n[[rolling]]\nname = \"floor\"\nkind = \"sphere\"\ngrip = \"{grip}\"\n\
+             first = {{ body = \"ground\" }}\nsecond = {{ body = \"ball\" }}\nradius = 0.1\n[[force]]\nname = \"push\"\n\
+             kind = \"load\"\nbody = \"ball\"\nforce = [0.5, 0.25, 0]\n"
+        );
+        run_in_forms("grip", &page, 1.0, |run| {
+            let seen: [f64; 18] = told(run, "floor_seen");
+            near([seen[0], seen[1], seen[2]], [0.5 * x, 0.25 * y, 0.1], 1e-9);
+        });
+    }
+}

@@ -22,9 +22,10 @@ const VISCOUS: Key = number("viscous", "N.m.s/rad or N.s/m", "").not_negative(LO
 
 /// The first key that an element of a kind has to have and that it lacks.
 pub(crate) fn lacking(kind: &Kind, has: impl Fn(&'static str) -> bool) -> Option<&'static str> {
-    let is_needed = |key: &Key| match (kind.word, key.name) {
-        ("cylinder", "joint") => !has("first"),
-        ("cylinder", "first" | "second" | "closed") => !has("joint"),
+    let is_of_either = kind.key("closed").is_some();
+    let is_needed = |key: &Key| match key.name {
+        "joint" if is_of_either => !has("first"),
+        "first" | "second" | "closed" if is_of_either => !has("joint"),
         _ => key.is_required,
     };
     kind.keys.iter().filter(|key| is_needed(key)).map(|key| key.name).find(|name| !has(name))

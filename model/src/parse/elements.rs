@@ -14,12 +14,18 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Element> 
     let before = sections.len();
     sections.extend(tables::each(reader, page, "rolling", |index| Owner::Element(before + index)));
     let sections = sections.into_iter().enumerate();
-    sections.map(|(index, (section, name))| element(reader, section, (index, name))).collect()
+    let read = |(index, (section, name))| element(reader, section, (index, name), index >= before);
+    sections.map(read).collect()
 }
 
-fn element(reader: &mut Reader<'_>, mut section: Section<'_>, (index, name): (usize, String)) -> Element {
+fn element(
+    reader: &mut Reader<'_>,
+    mut section: Section<'_>,
+    (index, name): (usize, String),
+    rolls: bool,
+) -> Element {
     let Some(kind) = section.read_kind(reader, |_, _| None) else {
-        return Element { name, kind: "", numbers: Vec::new() };
+        return Element { name, kind: "", rolls, numbers: Vec::new() };
     };
     if kind.key("closed").is_some() {
         let twice = format!("{} is along a joint and between points", section.title);
@@ -76,5 +82,5 @@ fn element(reader: &mut Reader<'_>, mut section: Section<'_>, (index, name): (us
             _ => _ = section.find(reader, key.name),
         }
     }
-    Element { name, kind: kind.word, numbers }
+    Element { name, kind: kind.word, rolls, numbers }
 }

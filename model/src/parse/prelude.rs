@@ -32,8 +32,10 @@ pub(super) fn expanded<'t>(file: &Table<'t>) -> (Table<'t>, Vec<Range<usize>>) {
     for (keys, table) in elements {
         places.extend(table.values().map(Spanned::span));
         let Some(element) = Expansion::new(file, keys, table) else { continue };
-        let parts = [keys.name, element.kind.word].map(|name| prelude.get_ref().get(name));
-        let parts = parts.into_iter().flatten().filter_map(|parts| parts.get_ref().as_table());
+        let parts = names_of_parts(keys, element.kind).into_iter();
+        let parts = parts
+            .filter_map(|name| prelude.get_ref().get(name.as_str()))
+            .filter_map(|parts| parts.get_ref().as_table());
         for (what, parts) in parts.flatten() {
             let place = element.place.clone();
             let all = whole
@@ -46,6 +48,13 @@ pub(super) fn expanded<'t>(file: &Table<'t>) -> (Table<'t>, Vec<Range<usize>>) {
         }
     }
     (whole, places)
+}
+
+/// Under which names the prelude has what all elements of a table have, and those of a kind.
+fn names_of_parts(keys: &keys::Table, kind: &Kind) -> [String; 2] {
+    let own =
+        if keys.name == ELEMENT.name { kind.word.to_owned() } else { format!("{}_{}", keys.name, kind.word) };
+    [keys.name.to_owned(), own]
 }
 
 /// The key of the prelude that says which key, or which words of one, an element must have for a part to be there.

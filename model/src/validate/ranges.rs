@@ -91,12 +91,10 @@ impl<'m> Ranged<'m> {
     }
 
     pub(super) fn of_element(index: usize, element: &'m Element) -> Self {
-        let keys = ELEMENT
-            .kind(element.kind)
-            .or_else(|| ROLLING.kind(element.kind))
-            .map_or(&[][..], |kind| kind.keys);
+        let table = if element.rolls { &ROLLING } else { &ELEMENT };
+        let keys = table.kind(element.kind).map_or(&[][..], |kind| kind.keys);
         let numbers = element.numbers.iter().map(|(name, number)| (*name, number));
-        Self::new((Owner::Element(index), format!("element `{}`", element.name)), keys, numbers)
+        Self::new((Owner::Element(index), format!("{} `{}`", table.name, element.name)), keys, numbers)
     }
 
     pub(super) fn of_controller(index: usize, controller: &'m Controller) -> Self {

@@ -25,7 +25,7 @@ fn read(text: &str) -> Result<Model, Diagnostics> {
 }
 
 /// All tables of keys that the document shows.
-const TABLES: [&Table; 21] = [
+const TABLES: [&Table; 22] = [
     &keys::FILE,
     &keys::ATTRACTION,
     &keys::SIMULATION,
