@@ -30,8 +30,9 @@ pub enum Coupling {
     Formula(Formula),
     /// A formula of joint coordinates, and of where frames are, that is zero.
     Zero(Formula),
-    /// A formula of joint coordinates and rates, and of how frames lie and move, linear in what moves, that is zero: a row of velocities, of which nothing
-    /// follows for positions. Φ of it counts as zero, its row in Φ_q is what the rates are multiplied by.
+    /// A formula of joint coordinates and rates, and of how frames lie and move, linear in what moves, that is zero: a
+    /// row of velocities, of which nothing follows for positions. Φ of it counts as zero, its row in Φ_q is what the
+    /// rates are multiplied by.
     Rate(Formula),
 }
 

@@ -351,13 +351,13 @@ const FAULTS: &[Fault] = &[
     fault("derive/kinematics.rs", "carried-sled", "nu[row] = «system.graph.neg(by_time)»;", "by_time"),
     fault("joint_space/closure.rs", "sled", "Some(&own) => «by_rate.of(graph, own)»,", "Graph::ZERO"),
     fault("joint_space/closure.rs", "sled", "«own.get(row).copied()».unwrap_or_else(|| derivative.of(graph, phi))", "None::<ExprId>"),
-    fault("joint_space/closure.rs", "cut-row", "«angle_rate(&mut system.graph, (sine, cosine), rates.into())»", "rates[0]"),
+    fault("joint_space/velocity_rows.rs", "cut-row", "«angle_rate(&mut system.graph, (sine, cosine), rates.into())»", "rates[0]"),
     // Frames seen from others.
     fault("derive/between.rs", "ball", "let distance = «graph.sub_vec(&arm, &point)»;", "arm"),
     fault("derive/between.rs", "ball", "Some(axes) => «system.graph.mat_mul(&relative, axes)»,", "relative"),
     fault("derive/kinematics.rs", "ball", "let by_time = «at_rest(system, by_time)»;", "by_time"),
-    fault("joint_space/closure.rs", "ball", "(symbol, «derivative.of(&mut system.graph, place)»)", "place"),
-    fault("joint_space/closure.rs", "ball", "Symbol::Spin { moving_body, k } => (symbol, «spins[moving_body][k]»),", "Graph::ZERO"),
+    fault("joint_space/velocity_rows.rs", "ball", "(symbol, «derivative.of(&mut system.graph, place)»)", "place"),
+    fault("joint_space/velocity_rows.rs", "ball", "Symbol::Spin { moving_body, k } => (symbol, «spins[moving_body][k]»),", "spins[moving_body][0]"),
     // The last passes.
     fault("simplify/scales.rs", "pair", "let product = self.graph.mul(x, y);\n                self.with_factor(&«c.mul(&d)», product)", "c.clone()"),
     fault("simplify/scales.rs", "pair", "let (c, x) = self.known[a].clone();\n                («c.neg()», x)", "c"),

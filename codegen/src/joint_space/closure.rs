@@ -1,26 +1,19 @@
 //! The joints that close loops, in joint coordinates: their rows, what the rates change them by, and how fast that
 //! itself changes.
 
-use super::dynamics;
 use super::embedding::Embedding;
-use super::forces::OfJoints;
 use super::layout::{Layout, Place};
-use super::link_kinematics::LinkKinematics;
-use super::maps;
 use super::relation::Relation;
 use super::whole_angles::WholeAngles;
-use crate::derive::constraints;
 use crate::derive::frames::sine_and_cosine;
 use crate::derive::in_time::in_time;
-use crate::derive::joint_coordinate;
-use crate::derive::laws::Readings;
 use crate::derive::system::System;
 use crate::expr::definitions::{Definitions, Expansion, Values};
-use crate::expr::differentiate::{Derivative, Direction, angle_rate};
+use crate::expr::differentiate::{Derivative, Direction};
 use crate::expr::graph::{ExprId, Graph, Node};
 use crate::expr::symbol::Symbol;
 use crate::simplify::normal_form::{normal_form, vanishes};
-use gyro_model::{JointCoordinate, Model, RowOwner};
+use gyro_model::{Model, RowOwner};
 use std::array::from_fn;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -63,87 +56,6 @@ pub fn rows(
     let phi = normal_form(&mut system.graph, unit, &phi);
     let graph = &mut system.graph;
     rows.into_iter().zip(phi).filter(|&(_, row)| !vanishes(graph, unit, row)).collect()
-}
-
-/// Joint coordinates and rates; the rate of one that a loop's joint has, and that is no sum of the tree's, is the
-/// derivative of where the bodies are.
-struct OfLoops<'a>(OfJoints<'a>);
-
-impl Readings for OfLoops<'_> {
-    fn value(&self, system: &mut System, on: JointCoordinate) -> ExprId {
-        self.0.value(system, on)
-    }
-
-    fn rate(&self, system: &mut System, on: JointCoordinate) -> ExprId {
-        let OfJoints { layout, angles } = self.0;
-        if self.0.parts(on).is_some() {
-            return self.0.rate(system, on);
-        }
-        let (frames, kind) = (system.joints[on.joint], system.model.coordinate_kind(on));
-        let (poses, embedding) = (&angles.poses, Embedding::identity(layout.n_tree_rates()));
-        let motion = Directions { layout, angles, embedding: &embedding };
-        let motion = motion.of_motion(&mut system.graph, system.model);
-        let definitions = Definitions::default();
-        let mut derivative = Derivative::new(&definitions, motion);
-        if !kind.is_angle() {
-            let value = joint_coordinate::value(system, on);
-            let value = system.expanded(poses, &[value])[0];
-            return derivative.of(&mut system.graph, value);
-        }
-        let (sine, cosine) = sine_and_cosine(&mut system.graph, kind, &frames, &frames.relative);
-        let [sine, cosine] = [sine, cosine].map(|part| system.expanded(poses, &[part])[0]);
-        let rates = [sine, cosine].map(|part| derivative.of(&mut system.graph, part));
-        angle_rate(&mut system.graph, (sine, cosine), rates.into())
-    }
-}
-
-/// The rows of velocities in joint coordinates and rates.
-fn of_velocities(
-    system: &mut System,
-    (layout, angles): (&Layout, &WholeAngles),
-    links: &[LinkKinematics],
-) -> Vec<(usize, ExprId)> {
-    let readings = OfLoops(OfJoints { layout, angles });
-    let (rows, own): (Vec<_>, Vec<_>) = constraints::of_velocities(system, &readings).into_iter().unzip();
-    let velocities = velocities(system, (layout, angles), links, &own);
-    let mut values = maps::expanded(system, angles.poses.clone(), velocities);
-    values.extend(&angles.poses);
-    let own = system.expanded(&values, &own);
-    let held = all_held(system, layout);
-    rows.into_iter().zip(system.expanded(&held, &own)).collect()
-}
-
-/// The velocities (s, w') that some expressions have in them: s as the derivative of where the body is.
-fn velocities(
-    system: &mut System,
-    (layout, angles): (&Layout, &WholeAngles),
-    links: &[LinkKinematics],
-    within: &[ExprId],
-) -> Values {
-    let named: BTreeSet<_> = (system.graph.reachable(within).into_iter())
-        .filter_map(|id| match *system.graph.node(id) {
-            Node::Symbol(symbol @ (Symbol::Velocity { .. } | Symbol::Spin { .. })) => Some(symbol),
-            _ => None,
-        })
-        .collect();
-    if named.is_empty() {
-        return Values::default();
-    }
-    let embedding = Embedding::identity(layout.n_tree_rates());
-    let motion = Directions { layout, angles, embedding: &embedding };
-    let motion = motion.of_motion(&mut system.graph, system.model);
-    let definitions = Definitions::default();
-    let mut derivative = Derivative::new(&definitions, motion);
-    let spins = dynamics::spins(system, links);
-    let of = |symbol| match symbol {
-        Symbol::Velocity { moving_body, k } => {
-            let place = angles.poses[&Symbol::Position { moving_body, k }];
-            (symbol, derivative.of(&mut system.graph, place))
-        }
-        Symbol::Spin { moving_body, k } => (symbol, spins[moving_body][k]),
-        _ => unreachable!("no other symbol is taken"),
-    };
-    named.into_iter().map(of).collect()
 }
 
 /// The values of all coordinates that loops hold; angles that x counts stay symbols.
@@ -191,15 +103,14 @@ pub fn held_at_zero(place: Place) -> [(Symbol, ExprId); 5] {
 }
 
 impl Closure {
-    /// `embedding` says how the determined rates follow those of the state.
+    /// `embedding` says how the determined rates follow those of the state, `own` are the rows of velocities.
     pub fn derive(
         system: &mut System,
         rows: Vec<(usize, ExprId)>,
         (layout, angles): (&Layout, &WholeAngles),
-        (embedding, links): (&Embedding, &[LinkKinematics]),
+        (embedding, own): (&Embedding, &BTreeMap<usize, ExprId>),
         unit: &[Vec<ExprId>],
     ) -> Self {
-        let own: BTreeMap<_, _> = of_velocities(system, (layout, angles), links).into_iter().collect();
         let mut rows = rows;
         rows.extend(own.keys().map(|&row| (row, Graph::ZERO)));
         rows.sort_unstable_by_key(|&(row, _)| row);
@@ -212,7 +123,7 @@ impl Closure {
         let graph = &mut system.graph;
         let mut jacobian = vec![Vec::new(); rows.len()];
         for rate in 0..layout.n_rates {
-            let column = directions.column(graph, &definitions, (&rows, &phi, &own), rate);
+            let column = directions.column(graph, &definitions, (&rows, &phi, own), rate);
             jacobian.iter_mut().zip(column).for_each(|(row, entry)| row.push(entry));
         }
         let motion = directions.of_motion(graph, system.model);
@@ -252,7 +163,7 @@ impl Closure {
         system: &mut System,
         phi: &[ExprId],
         (layout, angles): (&Layout, &WholeAngles),
-        links: &[LinkKinematics],
+        own: &BTreeMap<usize, ExprId>,
     ) -> Self {
         let held = layout.determined.iter().filter_map(|known| match known.by {
             Relation::Held(row) => Some(row),
@@ -262,13 +173,12 @@ impl Closure {
         let rows: Vec<_> = self.rows.iter().chain(&self.holding).copied().collect();
         let phi: Vec<_> = rows.iter().map(|&row| phi[row]).collect();
         let phi = system.expanded(&angles.poses, &phi);
-        let own: BTreeMap<_, _> = of_velocities(system, (layout, angles), links).into_iter().collect();
         self.by_determined = vec![Vec::new(); rows.len()];
         let every = Embedding::identity(layout.n_tree_rates());
         let directions = Directions { layout, angles, embedding: &every };
         let definitions = counted_angles(system, layout, angles);
         for rate in layout.n_rates..layout.n_tree_rates() {
-            let column = directions.column(&mut system.graph, &definitions, (&rows, &phi, &own), rate);
+            let column = directions.column(&mut system.graph, &definitions, (&rows, &phi, own), rate);
             let held = all_held(system, layout);
             let column = system.expanded(&held, &column);
             self.by_determined.iter_mut().zip(column).for_each(|(row, entry)| row.push(entry));

@@ -52,6 +52,7 @@ mod regressor;
 mod relation;
 mod screw_moves;
 mod slopes;
+mod velocity_rows;
 mod whole_angles;
 mod zero_orientation;
 

@@ -1,4 +1,5 @@
-//! What ready elements and rolling bodies are told. What they stand for is read with the forces and states of the model file.
+//! What ready elements and rolling bodies are told. What they stand for is read with the forces, states and rows of
+//! the model file.
 
 use super::numbers::{number, vector};
 use super::reader::Reader;

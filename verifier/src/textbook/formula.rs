@@ -471,20 +471,12 @@ impl<'t, F: Field> Text<'t, '_, F> {
 
 /// What the laws of links and bushings call what they see of their own ends.
 fn of_own_ends(name: &str) -> Option<Seen> {
-    let (place, is_rate) = match name.strip_suffix(" rate") {
-        Some(place) => (place, true),
-        None => (name, false),
-    };
-    let reading = match place {
-        "length" => return Some(if is_rate { Seen::LengthRate } else { Seen::Length }),
-        "x" => 0,
-        "y" => 1,
-        "z" => 2,
-        "angle_x" => 3,
-        "angle_y" => 4,
-        "angle_z" => 5,
-        _ => return None,
-    };
+    let (place, is_rate) = name.strip_suffix(" rate").map_or((name, false), |place| (place, true));
+    if place == "length" {
+        return Some(if is_rate { Seen::LengthRate } else { Seen::Length });
+    }
+    let reading =
+        ["x", "y", "z", "angle_x", "angle_y", "angle_z"].iter().position(|known| *known == place)?;
     Some(if is_rate { Seen::BetweenRate(reading) } else { Seen::Between(reading) })
 }
 
