@@ -30,8 +30,10 @@ pub(super) fn velocities(
     at: &Configuration,
     from: &[f64],
 ) -> Result<Vec<f64>, AssemblyError> {
-    // What free bodies are given stays as long as all else can be met.
-    match met(model, kinematics, scales, (guesses, at, from), free(model)) {
+    // What free bodies that roll are given stays as long as all else can be met.
+    let rolls = model.couplers.iter().any(|coupler| coupler.second.is_none());
+    let of_free = if rolls { free(model) } else { Rates::none(model) };
+    match met(model, kinematics, scales, (guesses, at, from), of_free) {
         Err(_) => met(model, kinematics, scales, (guesses, at, from), Rates::none(model)),
         found => found,
     }
