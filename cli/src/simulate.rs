@@ -50,10 +50,11 @@ pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         Some(Ok(verdict)) => (Some(verdict), None),
         Some(Err(failure)) => (None, Some(failure)),
         None => {
-            verdict::warnings(&scene, &outcome).iter().for_each(|words| remarks::warn(words));
+            verdict::doubts(&scene, &outcome).iter().for_each(|words| remarks::warn(words));
             (None, None)
         }
     };
+    verdict::happenings(&scene, &outcome).iter().for_each(|words| remarks::warn(words));
     let worthless = unjudged.or_else(|| verdict::worthless(&scene, &outcome, verdict.as_ref()));
     let unjudged = worthless.as_ref().filter(|_| args.verify && verdict.is_none());
     let linear = outcome.linear.as_ref().filter(|_| args.linearize.is_some());

@@ -193,15 +193,24 @@ pub(crate) fn worthless(scene: &Scene, outcome: &Outcome, verdict: Option<&Verdi
     Some(Failure::Worthless(format!("the result is worthless. {reason}")))
 }
 
-/// What a run says of itself that is not good, for those who have not asked for a verdict.
+/// What a run says of itself that is not good.
 pub(crate) fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<String> {
+    [doubts(scene, outcome), happenings(scene, outcome)].concat()
+}
+
+/// What of it a verdict tells better.
+pub(crate) fn doubts(scene: &Scene, outcome: &Outcome) -> Vec<String> {
     let reasons = gyro_runner::balance(&outcome.summary, scene.is_balanced).into_iter();
     let all =
         reasons.map(|reason| reason.to_string()).chain(passage_words(scene, &outcome.summary.statistics));
     let all = all.map(|words| format!("{words} --verify tells how far the result can be trusted."));
     let stay = kinks::stay(&scene.start.kinks, &outcome.summary);
-    let of_outputs = lapse::of_outputs(scene, &outcome.samples);
-    all.chain(stay).chain(of_outputs).chain(rolling::that_lift(scene, &outcome.samples)).collect()
+    all.chain(stay).collect()
+}
+
+/// What happened that no finer steps would change.
+pub(crate) fn happenings(scene: &Scene, outcome: &Outcome) -> Vec<String> {
+    [lapse::of_outputs(scene, &outcome.samples), rolling::that_lift(scene, &outcome.samples)].concat()
 }
 
 /// That steps of fixed length have passed singular poses, if they have.

@@ -154,21 +154,25 @@ fn by_formula(reader: &mut Reader<'_>, section: &Section<'_>, second: JointCoord
         let message = format!("{} has a `formula` and `{key}`", section.title);
         section.refuse(reader, key, &message, "remove it: the formula says all of it");
     }
-    let kinds = reader.outputs.clone();
     let refuse = |name: &str, seen: Seen| {
         let words = match seen {
             Seen::Coordinate(on) if on == second => [
                 format!("a coupler's formula cannot name its second coordinate `{name}`"),
                 "itself".to_owned(),
             ],
-            _ if level(&kinds, seen) == Level::Place => return None,
+            Seen::Coordinate(_) => return None,
             _ => [
                 format!("a coupler's formula cannot depend on `{name}`"),
                 "not a joint coordinate".to_owned(),
             ],
         };
         let [message, label] = words;
-        let help = "write a formula of other joint coordinates and of parameters: a [[driver]] moves in time";
+        let help = match seen {
+            Seen::Output { .. } => {
+                "write a [[constraint]], which may name numbers of [[output]]s of kind \"relative\""
+            }
+            _ => "write a formula of other joint coordinates and of parameters: a [[driver]] moves in time",
+        };
         Some([message, label, help.to_owned()])
     };
     Coupling::Formula(of_coordinates(reader, section, "formula", &refuse))

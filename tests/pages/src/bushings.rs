@@ -28,18 +28,10 @@ impl Page {
             return;
         }
         for index in 0..1 + dice.below(2) {
-            let (first, second) = (dice.below(self.bodies.len()), dice.below(self.bodies.len()));
-            let moves = self.bodies[first].0.moves() || self.bodies[second].0.moves();
-            if first == second || !moves {
-                continue;
-            }
-            let ends = [("first", first), ("second", second)]
-                .map(|(side, body)| format!("{side} = {{ body = \"b{body}\"{} }}\n", frame(&mut dice)));
+            let Some(ends) = self.two_frames(&mut dice) else { continue };
             let strengths = strengths(&mut dice);
-            self.elements += &format!(
-                "\n[[force]]\nname = \"b{index}\"\nkind = \"bushing\"\n{}{strengths}",
-                ends.concat()
-            );
+            self.elements +=
+                &format!("\n[[force]]\nname = \"b{index}\"\nkind = \"bushing\"\n{ends}{strengths}");
             if dice.once_in(2) {
                 self.elements +=
                     &format!("\n[[output]]\nname = \"n{index}\"\nkind = \"bushing\"\nforce = \"b{index}\"\n");
@@ -48,8 +40,22 @@ impl Page {
     }
 }
 
+impl Page {
+    /// Frames of two bodies of which one moves, if those that are drawn are such.
+    pub fn two_frames(&self, dice: &mut Dice) -> Option<String> {
+        let [first, second] = [(); 2].map(|()| dice.below(self.bodies.len()));
+        let moves = self.bodies[first].0.moves() || self.bodies[second].0.moves();
+        if first == second || !moves {
+            return None;
+        }
+        let ends = [("first", first), ("second", second)]
+            .map(|(side, body)| format!("{side} = {{ body = \"b{body}\"{} }}\n", frame(dice)));
+        Some(ends.concat())
+    }
+}
+
 /// Point and orientation of a frame, of which either may be left out.
-pub fn frame(dice: &mut Dice) -> String {
+fn frame(dice: &mut Dice) -> String {
     let mut keys = String::new();
     if dice.once_in(2) {
         let point = dice.point();

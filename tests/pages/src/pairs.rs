@@ -1,6 +1,5 @@
 //! Outputs of two frames, and rows among their numbers.
 
-use crate::bushings::frame;
 use crate::dice::Dice;
 use crate::page::Page;
 
@@ -12,15 +11,8 @@ impl Page {
             return;
         }
         for index in 0..1 + dice.below(2) {
-            let [first, second] = [(); 2].map(|()| dice.below(self.bodies.len()));
-            let moves = self.bodies[first].0.moves() || self.bodies[second].0.moves();
-            if first == second || !moves {
-                continue;
-            }
-            let ends = [("first", first), ("second", second)]
-                .map(|(side, body)| format!("{side} = {{ body = \"b{body}\"{} }}\n", frame(&mut dice)));
-            self.elements +=
-                &format!("\n[[output]]\nname = \"p{index}\"\nkind = \"relative\"\n{}", ends.concat());
+            let Some(ends) = self.two_frames(&mut dice) else { continue };
+            self.elements += &format!("\n[[output]]\nname = \"p{index}\"\nkind = \"relative\"\n{ends}");
             let number = dice.pick(&["x", "yz", "vy", "wx", "wz"]);
             self.early.push(format!("p{index}.{number}"));
             if !dice.once_in(4) {
