@@ -1,7 +1,7 @@
 //! Kinks of laws, as runs end steps there and count them.
 
 use crate::formulas::{formula_of, seen};
-use gyro_model::{ForceKind, Formula, Model, Number, Operation, Quaternion, Support, Vector};
+use gyro_model::{ForceKind, Formula, Model, Quaternion, Support, Vector};
 use gyro_runner::{End, Kink, Levels, Line, Seen, Stay, Summary};
 
 /// The kinks of a model's laws, each once: those that the state tells of, without what is seen between frames of a
@@ -9,7 +9,7 @@ use gyro_runner::{End, Kink, Levels, Line, Seen, Stay, Summary};
 pub(crate) fn kinks(model: &Model) -> Vec<Kink> {
     let mut kinks = Vec::new();
     for (site, kink) in model.kinks() {
-        let told = needed(site.formula, kink.of);
+        let told = site.formula.up_to(kink.of);
         let Some(line) = line(model, site.force, &told) else { continue };
         let see = |what| match what {
             gyro_model::Seen::Length => Seen::Distance(line),
@@ -38,21 +38,6 @@ pub(crate) fn stay(kinks: &[Kink], summary: &Summary) -> Option<String> {
     Some(format!(
         "From t = {t} s on the motion stays where a law is not smooth: {place}. Steps have not ended there any more."
     ))
-}
-
-/// A formula up to one of its operations, with nothing in the place of what this does not need.
-fn needed(of: &Formula, last: usize) -> Formula {
-    let mut operations = of.operations[..=last].to_vec();
-    let mut is_needed = vec![false; last + 1];
-    is_needed[last] = true;
-    for place in (0..=last).rev() {
-        if is_needed[place] {
-            operations[place].operands().for_each(|operand| is_needed[operand] = true);
-        } else {
-            operations[place] = Operation::Number(Number::integer(0));
-        }
-    }
-    Formula::smooth(&of.text, operations)
 }
 
 /// The ends of a link whose law names its length; `None` where what the law sees is nothing that the state alone tells.

@@ -1,5 +1,6 @@
 //! What acts between and on bodies besides joints: drivers, forces; and outputs.
 
+use crate::keys::Table;
 use crate::{BodyFrame, Bushing, CoordinateUse, Formula, JointCoordinate, Motion, Number, Relative, Seen};
 use std::slice::from_ref;
 
@@ -30,8 +31,8 @@ pub struct Element {
     pub name: String,
     /// The word of its kind.
     pub kind: &'static str,
-    /// Whether it is one of `[[rolling]]`.
-    pub rolls: bool,
+    /// The table of the model file that it is in.
+    pub table: &'static Table,
     /// What it was told, by its keys: of a vector each number.
     pub numbers: Vec<(&'static str, Number)>,
 }
@@ -203,7 +204,8 @@ impl ForceKind {
             Self::Link { damping, tension, .. } => !damping.is_zero() || !tension.is_zero(),
             Self::Bushing(bushing) => {
                 let strengths = bushing.strengths();
-                strengths.iter().any(|[_, damping, load]| !damping.is_zero() || !load.is_zero())
+                let mut others = strengths.iter().flat_map(|[_, others @ ..]| *others).chain(&bushing.moment);
+                others.any(|number| !number.is_zero())
             }
             _ => true,
         }
@@ -249,7 +251,7 @@ impl ForceKind {
 }
 
 fn numbers_of_bushing(bushing: &Bushing) -> Vec<(&'static str, &[Number])> {
-    let Bushing { first, second, along, about } = bushing;
+    let Bushing { first, second, along, about, moment } = bushing;
     let mut numbers = vec![
         ("first", &first.point[..]),
         ("second", &second.point),
@@ -259,6 +261,7 @@ fn numbers_of_bushing(bushing: &Bushing) -> Vec<(&'static str, &[Number])> {
         ("torsion", &about.stiffness),
         ("torsional_damping", &about.damping),
         ("torque", &about.load),
+        ("moment", moment),
     ];
     let orientations = [("first", first), ("second", second)].into_iter();
     numbers.extend(orientations.filter_map(|(key, frame)| Some((key, &frame.orientation.as_ref()?[..]))));

@@ -1,6 +1,6 @@
 //! Frames that are fixed in bodies, and what acts between two of them.
 
-use crate::Number;
+use crate::{Formula, Number, Seen};
 
 /// A frame that is fixed in a body.
 #[derive(Clone, Debug)]
@@ -60,7 +60,8 @@ impl Relative {
 ///
 /// Each reading u has the force or torque `−stiffness u − damping u̇ + load`, and together they have the power Σ f u̇
 /// on the two bodies. So the force acts on the second body at the origin of the second frame, and its opposite on the
-/// first *at the same point of space*. The springs are conservative.
+/// first *at the same point of space*. The springs are conservative. A `moment` is a torque by the axes of the first
+/// frame, which is defined however the frames are turned: what acts by it alone asks for no angles.
 #[derive(Clone, Debug)]
 pub struct Bushing {
     /// The first frame.
@@ -71,6 +72,8 @@ pub struct Bushing {
     pub along: BushingLaw,
     /// About the axes of the Cardan angles: N·m/rad, N·m·s/rad and N·m.
     pub about: BushingLaw,
+    /// Torque on the second body by the axes of the first frame, N·m; formulas as those of a load.
+    pub moment: [Number; 3],
 }
 
 /// What a bushing does along three of its readings.
@@ -100,5 +103,17 @@ impl Bushing {
             [&law.stiffness[k % 3], &law.damping[k % 3], &law.load[k % 3]]
         };
         std::array::from_fn(one)
+    }
+
+    /// Whether anything of it acts about the Cardan angles, or asks for one.
+    pub fn has_angles(&self) -> bool {
+        let sees = |number: &Number| {
+            let seen = number.formula().into_iter().flat_map(Formula::sees);
+            seen.into_iter().any(|seen| matches!(seen, Seen::Between(3..) | Seen::BetweenRate(3..)))
+        };
+        let BushingLaw { stiffness, damping, load } = &self.about;
+        let is_there = |number: &Number| !number.is_zero();
+        let numbers = || self.strengths().into_iter().flatten().chain(&self.moment);
+        [stiffness, damping, load].into_iter().flatten().any(is_there) || numbers().any(sees)
     }
 }

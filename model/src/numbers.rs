@@ -71,7 +71,11 @@ impl Shape {
     fn add_numbers<'m>(&'m self, numbers: &mut Vec<&'m Number>) {
         match &self.kind {
             ShapeKind::Box(sides) => numbers.extend(sides),
-            ShapeKind::Cylinder(sizes) => numbers.extend(sizes),
+            ShapeKind::Cylinder(sizes)
+            | ShapeKind::Capsule(sizes)
+            | ShapeKind::Torus(sizes)
+            | ShapeKind::Plane(sizes) => numbers.extend(sizes),
+            ShapeKind::Vertices(corners) => numbers.extend(corners.as_flattened()),
             ShapeKind::Sphere(radius) => numbers.push(radius),
             ShapeKind::Mesh { scale, .. } => numbers.extend(scale),
         }

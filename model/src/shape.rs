@@ -1,4 +1,4 @@
-//! What a body looks like: for pictures only, nothing else asks for it.
+//! What a body looks like; contacts between bodies ask for some of it.
 
 use crate::Number;
 
@@ -24,6 +24,14 @@ pub enum ShapeKind {
     Cylinder([Number; 2]),
     /// Radius, m.
     Sphere(Number),
+    /// Radius, and length between the centres of its round ends, m; its axis is z.
+    Capsule([Number; 2]),
+    /// Radius of the rim's centre line, and that of the rim, m; its axis is z.
+    Torus([Number; 2]),
+    /// The plane of x and y, and edges of what is drawn of it, m.
+    Plane([Number; 2]),
+    /// Corners of a convex body, m.
+    Vertices(Vec<[Number; 3]>),
     /// Triangles of a file, which only what draws them reads.
     Mesh {
         /// The path as the model file writes it, relative to its folder.

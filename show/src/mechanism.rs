@@ -64,9 +64,9 @@ pub enum Support {
 /// A solid or a surface that is part of a body's look.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shape {
-    /// `box`, `cylinder` (its axis is z), `sphere` or `mesh`.
+    /// `box`, `cylinder` (its axis is z), `sphere`, `capsule`, `torus`, `plane`, `vertices` or `mesh`.
     pub kind: &'static str,
-    /// Edges of a box; radius and length of a cylinder; radius of a sphere, m. Of a mesh, by what its coordinates are
+    /// Its sizes as model files have them, m; all coordinates of vertices. Of a mesh, by what its coordinates are
     /// multiplied to be in m.
     pub size: Vec<f64>,
     /// Which of the mechanism's meshes it is.

@@ -75,8 +75,8 @@ impl<T: Number> Frames<T> {
 }
 
 impl<T: Number> Readings<T> {
-    /// What forces along the readings do to both bodies.
-    pub(crate) fn wrenches(&self, [x, y, z, about @ ..]: [T; 6]) -> [Wrench<T>; 2] {
+    /// What forces along the readings, and a torque by the axes of the first frame, do to both bodies.
+    pub(crate) fn wrenches(&self, [x, y, z, about @ ..]: [T; 6], moment: [T; 3]) -> [Wrench<T>; 2] {
         let force = self.axes * Vector3::new(x, y, z);
         let torque = if about == [T::zero(); 3] {
             Vector3::zeros()
@@ -84,6 +84,7 @@ impl<T: Number> Readings<T> {
             // A torque whose products with the hinges' axes are these.
             solved(self.hinges.transpose(), about.into())
         };
+        let torque = torque + self.axes * Vector3::from(moment);
         let on = |motion: &Motion<T>, sign: T| {
             let turned = Wrench::torque(motion.a.tr_mul(&(torque * sign)));
             Wrench::at(motion, &self.origin, force * sign).plus(&turned)

@@ -17,6 +17,7 @@ pub(crate) struct Bushing<T> {
     stiffness: [Option<Amount<T>>; 6],
     damping: [Option<Amount<T>>; 6],
     load: [Option<Amount<T>>; 6],
+    moment: [Option<Amount<T>>; 3],
 }
 
 /// What of it acts.
@@ -34,25 +35,25 @@ impl<T: Number> Bushing<T> {
         parts: (&Places<T>, &[Joint<T>]),
         bushing: &gyro_model::Bushing,
     ) -> Self {
-        let amounts = |which: usize| {
-            bushing.strengths().map(|of| {
-                let number = Some(of[which]).filter(|number| !number.is_zero());
-                number.map(|number| Amount::new(model, parts, number))
-            })
+        let amount = |number: &gyro_model::Number| {
+            let number = Some(number).filter(|number| !number.is_zero());
+            number.map(|number| Amount::new(model, parts, number))
         };
+        let amounts = |which: usize| bushing.strengths().map(|of| amount(of[which]));
         Self {
             frames: Frames::new(model, parts.0, bushing.ends()),
             stiffness: amounts(0),
             damping: amounts(1),
             load: amounts(2),
+            moment: bushing.moment.each_ref().map(amount),
         }
     }
 
     /// The parts that it has.
     pub(crate) fn parts(&self) -> Vec<Part> {
-        let has = |strengths: &[Option<_>; 6]| strengths.iter().any(Option::is_some);
+        let has = |strengths: &[Option<_>]| strengths.iter().any(Option::is_some);
         let springs = has(&self.stiffness).then_some(Part::Springs);
-        let rest = (has(&self.damping) || has(&self.load)).then_some(Part::Rest);
+        let rest = [&self.damping[..], &self.load, &self.moment].into_iter().any(has).then_some(Part::Rest);
         springs.into_iter().chain(rest).collect()
     }
 
@@ -95,7 +96,14 @@ impl<T: Number> Bushing<T> {
     ) {
         let readings = self.frames.readings(scene, at);
         let Readings { motions, seen, .. } = &readings;
-        let wrenches = readings.wrenches(self.forces(part, scene, at, seen));
+        let moment = match part {
+            Part::Springs => [T::zero(); 3],
+            Part::Rest => {
+                let now = Now { frames: Some(seen), ..Now::new(scene, at) };
+                self.moment.each_ref().map(|moment| times(moment.as_ref(), &now, T::one()))
+            }
+        };
+        let wrenches = readings.wrenches(self.forces(part, scene, at, seen), moment);
         for ((spot, motion), wrench) in self.frames.0.iter().zip(motions).zip(wrenches) {
             sink(&spot.place, motion, wrench);
         }

@@ -72,6 +72,12 @@ fn drawn(model: &Model, meshes: &Meshes, shape: &Shape) -> gyro_show::Shape {
     let (kind, size) = match &shape.kind {
         ShapeKind::Box(edges) => ("box", model.values(edges).to_vec()),
         ShapeKind::Cylinder(sizes) => ("cylinder", model.values(sizes).to_vec()),
+        ShapeKind::Capsule(sizes) => ("capsule", model.values(sizes).to_vec()),
+        ShapeKind::Torus(sizes) => ("torus", model.values(sizes).to_vec()),
+        ShapeKind::Plane(sizes) => ("plane", model.values(sizes).to_vec()),
+        ShapeKind::Vertices(corners) => {
+            ("vertices", corners.iter().flat_map(|corner| model.values(corner)).collect())
+        }
         ShapeKind::Sphere(radius) => ("sphere", vec![model.value(radius)]),
         ShapeKind::Mesh { file, scale } => {
             mesh = meshes.place(file);

@@ -29,6 +29,7 @@ mod rolling_bodies;
 mod states;
 mod stops;
 mod support;
+mod touching;
 mod verdicts;
 
 use crate::inputs::MOTOR;

@@ -8,14 +8,14 @@ use std::f64::consts::PI;
 use std::fs;
 
 /// In joint coordinates and in maximal ones, generated and assembled.
-const FORMS: [&[&str]; 4] = [
+pub(super) const FORMS: [&[&str]; 4] = [
     &[],
     &["--coordinates", "maximal"],
     &["--engine", "assembled"],
     &["--engine", "assembled", "--coordinates", "maximal"],
 ];
 
-const EXACT: [&str; 4] = ["--integrator", "dop853", "--tolerance", "1e-12"];
+pub(super) const EXACT: [&str; 4] = ["--integrator", "dop853", "--tolerance", "1e-12"];
 
 fn example(name: &str, options: &[&str]) -> Value {
     let folder = Folder::new(&format!("rolling-{name}-{}", options.concat().replace(['-', '/'], "")));
@@ -24,17 +24,17 @@ fn example(name: &str, options: &[&str]) -> Value {
 }
 
 /// Numbers of an output where a run ends.
-fn told<const N: usize>(run: &Value, output: &str) -> [f64; N] {
+pub(super) fn told<const N: usize>(run: &Value, output: &str) -> [f64; N] {
     let all = run["outputs"][output].as_array().unwrap_or_else(|| panic!("{output} in {run}"));
     std::array::from_fn(|k| all[k].as_f64().unwrap())
 }
 
-fn number(run: &Value, output: &str) -> f64 {
+pub(super) fn number(run: &Value, output: &str) -> f64 {
     run["outputs"][output].as_f64().unwrap_or_else(|| panic!("{output} in {run}"))
 }
 
 #[track_caller]
-fn near<const N: usize>(found: [f64; N], expected: [f64; N], tolerance: f64) {
+pub(super) fn near<const N: usize>(found: [f64; N], expected: [f64; N], tolerance: f64) {
     for (found, expected) in found.iter().zip(&expected) {
         assert!((found - expected).abs() < tolerance, "{found}, not {expected}");
     }

@@ -5,7 +5,7 @@ use crate::derive::joint_coordinate::Load;
 use crate::derive::points;
 use crate::derive::system::System;
 use crate::expr::graph::{ExprId, Graph};
-use crate::expr::vector::{Mat3, Vec3, ZERO3, transposed};
+use crate::expr::vector::{Mat3, Vec3, transposed};
 use gyro_model::{BodyFrame, Bushing};
 
 /// How the second of two frames lies and moves, seen from the first, by its axes.
@@ -64,7 +64,7 @@ pub struct Between {
     /// Of each angle the vector whose product with the relative angular velocity is the angle's rate, by the axes of
     /// the first frame.
     torques: [Vec3; 3],
-    seen: Seen,
+    pub seen: Seen,
 }
 
 impl Between {
@@ -76,13 +76,18 @@ impl Between {
         Self { places: six(seen.place, angles), rates: six(seen.velocity, turning), torques, seen }
     }
 
-    /// What forces along the readings do to both bodies.
-    pub fn loads(&self, system: &mut System, bushing: &Bushing, forces: &[ExprId; 6]) -> [Load; 2] {
+    /// What forces along the readings, and a torque by the axes of the first frame, do to both bodies.
+    pub fn loads(
+        &self,
+        system: &mut System,
+        bushing: &Bushing,
+        (forces, moment): (&[ExprId; 6], Vec3),
+    ) -> [Load; 2] {
         let [first, second] = bushing.ends();
         let (a_i, point) = (system.poses[first.body].a, system.numbers(&second.point));
         let graph = &mut system.graph;
         let [x, y, z, about @ ..] = *forces;
-        let torque = self.torques.iter().zip(about).fold(ZERO3, |sum, (axis, strength)| {
+        let torque = self.torques.iter().zip(about).fold(moment, |sum, (axis, strength)| {
             let part = graph.scale_vec(strength, axis);
             graph.add_vec(&sum, &part)
         });

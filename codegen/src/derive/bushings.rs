@@ -39,7 +39,12 @@ impl Held {
             stored = graph.add(stored, energy);
             power = graph.add(power, done);
         }
-        Self { loads: between.loads(system, bushing, &forces), places: between.places, forces, stored, power }
+        let own = Own::Frames([&between.places, &between.rates]);
+        let moment = bushing.moment.each_ref().map(|number| own_strength(system, own, number));
+        let turned = system.graph.dot(&moment, &between.seen.spin);
+        power = system.graph.add(power, turned);
+        let loads = between.loads(system, bushing, (&forces, moment));
+        Self { loads, places: between.places, forces, stored, power }
     }
 }
 

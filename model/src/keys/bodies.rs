@@ -44,7 +44,8 @@ pub static BODY: Table = Table::new(
             .or("1"),
         tables(
             &SHAPE,
-            "one `[[body.shape]]` a shape of what the body looks like in pictures ([show.md](show.md))",
+            "one `[[body.shape]]` a shape of what the body looks like in pictures ([show.md](show.md)), and of what can touch \
+             others",
         )
         .eg("[[body.shape]] on a line of its own, then box = [x, y, z], cylinder = [radius, length], \
                  sphere = radius or mesh = \"file.stl\""),
@@ -110,10 +111,18 @@ pub static ROTATION: Table = Table::new(
 const SCALE: Value = Value::Either(&[Value::Number(""), Value::Numbers(3, "")]);
 
 /// `[[body.shape]]`.
-pub static SHAPE: Table = Table::new("shape", "A box, a cylinder, a sphere or a mesh.", &[
+pub static SHAPE: Table = Table::new("shape", "A box, a cylinder, a sphere and the like, or a mesh.", &[
+    text("name", "by which a `[[contact]]` names it").or("none"),
     vector("box", "m", "edges along x, y and z").positive(""),
     Key::new("cylinder", Value::Numbers(2, "m"), "radius and length; its axis is z").positive(""),
     number("sphere", "m", "radius").positive(""),
+    Key::new("capsule", Value::Numbers(2, "m"), "radius, and length between the centres of its round ends; its axis is z")
+        .positive(""),
+    Key::new("torus", Value::Numbers(2, "m"), "radius of its rim's centre line, and that of the rim; its axis is z")
+        .positive(""),
+    Key::new("plane", Value::Numbers(2, "m"), "edges of what is drawn of it; it has no end, and z points away from it")
+        .positive(""),
+    Key::new("vertices", Value::Rows, "corners of a convex body, or the one point that touches: rows of three numbers, m"),
     text("mesh", "path of an `.stl`, `.obj` or `.dae` file, relative to the folder of the model file")
         .eg("mesh = \"file.stl\""),
     Key::new("scale", SCALE, "of a mesh: what its coordinates are multiplied by, one number or three").or("1"),

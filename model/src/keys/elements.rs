@@ -270,3 +270,14 @@ pub static ROLLING: Table = Table::new(
     ),
     kind("sphere_on_cylinder", "a ball on a cylinder, likewise", &[SURFACE, ON_IT, RADIUS, OUTER, GRIP]),
 ]);
+
+/// How shapes touch: what `[[contact]]` between bodies comes to. Their first is the surface that is touched.
+pub(crate) static SURFACES: Table = Table::new("contact", "A pair of shapes.", &[]).of_kinds(&[
+    kind("points", "points of a body, or balls about them, on a plane", super::CONTACT.keys),
+    kind("rims", "round rims on a plane", super::CONTACT.keys),
+    kind("on_sphere", "a ball on a ball", super::CONTACT.keys),
+    kind("on_capsule", "a ball on a capsule", super::CONTACT.keys),
+    kind("on_cylinder", "a ball on a cylinder", super::CONTACT.keys),
+    kind("on_box", "a ball on a box", super::CONTACT.keys),
+    kind("capsules", "a capsule on a capsule", super::CONTACT.keys),
+]);

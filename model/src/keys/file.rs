@@ -61,7 +61,10 @@ pub static FILE: Table = Table::new(
         tables(&OUTPUT, "one `[[output]]` a thing that is computed besides the motion"),
         tables(&CONTROLLER, "one `[[controller]]` a sampled controller, which runs close a loop with"),
         tables(&EVENT, "one `[[event]]` a level whose crossings runs list"),
-        tables(&CONTACT, "one `[[contact]]` rigid stops and friction that sticks, on a joint coordinate"),
+        tables(
+            &CONTACT,
+            "one `[[contact]]` rigid stops and friction that sticks, on a joint coordinate; or what acts where bodies touch",
+        ),
     ],
 );
 

@@ -122,6 +122,9 @@ pub static FORCE: Table = Table::new(
                 .not_negative(DRIVES)
                 .or("[0, 0, 0]"),
             strengths("torque", "N.m", "what is added, likewise").naming(READINGS).or("[0, 0, 0]"),
+            strengths("moment", "N.m", "torque by the axes of the first frame, likewise")
+                .naming(READINGS)
+                .or("[0, 0, 0]"),
         ],
     ),
     kind(

@@ -12,12 +12,13 @@ mod joints;
 mod observed;
 
 pub use bodies::{BODY, DRIVEN, ELEMENTS, POINT_MASS, ROTATION, SHAPE};
+pub(crate) use elements::SURFACES;
 pub(crate) use elements::lacking;
 pub use elements::{ELEMENT, ROLLING};
 pub use file::{ATTRACTION, FILE, GENERATE, INPUT, MOTION, SIMULATION, SINUSOID};
 pub use forces::{BUSHING_END, FORCE, FORCE_END};
 pub use joints::{CONSTRAINT, COUPLER, COUPLER_END, DRIVER, JOINT, JOINT_END};
-pub use observed::{CONTACT, CONTROLLER, CURVE, EVENT, FORMULA, OUTPUT, STATE};
+pub use observed::{CONTACT, CONTACT_SIDE, CONTROLLER, CURVE, EVENT, FORMULA, OUTPUT, STATE};
 
 /// A table of the model file.
 #[derive(Debug)]

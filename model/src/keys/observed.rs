@@ -227,23 +227,57 @@ pub static STATE: Table = Table::new(
     ],
 );
 
+/// A side of `[[contact]]`.
+pub static CONTACT_SIDE: Table = Table::new(
+    "contact_side",
+    "A side of a contact.",
+    &[reference("body", "name of the body"), text("shape", "name of one of its shapes").or("all of them")],
+);
+
 /// `[[contact]]`.
-pub static CONTACT: Table = Table::new("contact", "Rigid stops and dry friction that sticks, on a joint coordinate.", &[
-    name("name, unlike those of parameters and inputs"),
-    ON_JOINT,
-    ON_COORDINATE,
-    number("lower", "rad or m", "the lower stop").or("none"),
-    number("upper", "rad or m", "the upper stop")
-        .eg("upper = ..., in rad or m, lower = ..., friction = ..., in N.m or N, or friction_coefficient = ...")
-        .or("none"),
-    number("restitution", "", "the part of its rate with which the coordinate rebounds from a stop, 0 to 1")
-        .eg("restitution = ..., from 0 to 1: the part of its rate with which the joint rebounds")
-        .or("required with stops"),
-    number("friction", "N.m or N", "the kinetic level of dry friction").not_negative("").or("0"),
-    number("static_friction", "N.m or N", "the static level, not below the kinetic one").or("that of `friction`"),
-    number("friction_coefficient", "", "times the reaction of the joint: added to the kinetic level, see below")
+pub static CONTACT: Table = Table::new(
+    "contact",
+    "On a joint coordinate rigid stops and dry friction that sticks; or what acts where shapes of two bodies touch.",
+    &[
+        name("name, unlike those of parameters and inputs"),
+        Key { is_required: false, ..ON_JOINT }.or("between bodies"),
+        ON_COORDINATE,
+        number("lower", "rad or m", "the lower stop").or("none"),
+        number("upper", "rad or m", "the upper stop")
+            .eg("upper = ..., in rad or m, lower = ..., friction = ..., in N.m or N, or friction_coefficient = ...")
+            .or("none"),
+        number("restitution", "", "the part of its rate with which the coordinate rebounds from a stop, 0 to 1")
+            .eg("restitution = ..., from 0 to 1: the part of its rate with which the joint rebounds")
+            .or("required with stops"),
+        number("friction", "N.m or N", "the kinetic level of dry friction").not_negative("").or("0"),
+        number("static_friction", "N.m or N", "the static level, not below the kinetic one")
+            .or("that of `friction`"),
+        number(
+            "friction_coefficient",
+            "",
+            "times the reaction of the joint: added to the kinetic level, see below; between bodies times the force that \
+             presses them together",
+        )
         .not_negative("")
         .or("0"),
-    number("static_friction_coefficient", "", "the same of the static level").or("that of `friction_coefficient`"),
-    number("radius", "m", "of the bearing").positive("").or("required with a coefficient about an axis"),
-]);
+        number("static_friction_coefficient", "", "the same of the static level")
+            .or("that of `friction_coefficient`"),
+        number("radius", "m", "of the bearing").positive("").or("required with a coefficient about an axis"),
+        Key::new("between", Value::Tables(&CONTACT_SIDE), "two tables of `body` and, unless all of its shapes are meant, `shape`")
+            .eg("between = [{ body = \"...\" }, { body = \"...\" }]")
+            .or("on a joint"),
+        number("stiffness", "N/m^exponent", "of the surfaces").positive("they would not touch").or("required between bodies"),
+        number("exponent", "", "1.5 for bodies that are round where they touch, 1 for a linear spring")
+            .positive("the force would jump")
+            .or("1.5"),
+        number("damping", "s/m", "of Hunt and Crossley: the force is 1 + `damping` · closing speed times as large")
+            .not_negative("it would drive the motion")
+            .or("0"),
+        number("stribeck_rate", "m/s", "at which friction has come down from its static level")
+            .positive("friction would jump")
+            .or("0.01"),
+        number("rate", "m/s", "at which friction reaches 71 % of its level")
+            .positive("friction would jump where the velocity changes sign")
+            .or("0.001"),
+    ],
+);

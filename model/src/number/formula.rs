@@ -94,6 +94,27 @@ impl Formula {
         Self { text, operations, names, kinks }
     }
 
+    /// One of its operations with those that it needs, as a formula.
+    #[must_use]
+    pub fn up_to(&self, last: usize) -> Self {
+        let mut is_needed = vec![false; last + 1];
+        is_needed[last] = true;
+        for place in (0..=last).rev() {
+            if is_needed[place] {
+                self.operations[place].operands().for_each(|operand| is_needed[operand] = true);
+            }
+        }
+        let before = is_needed.iter().scan(0, |count, is_needed| {
+            let before = *count;
+            *count += usize::from(*is_needed);
+            Some(before)
+        });
+        let places: Vec<usize> = before.collect();
+        let needed = (0..=last).filter(|place| is_needed[*place]);
+        let operations = needed.map(|place| self.operations[place].moved(|operand| places[operand]));
+        Self::smooth(&self.text, operations.collect())
+    }
+
     /// The value, given how to compute an operation from the values of earlier ones.
     ///
     /// # Errors

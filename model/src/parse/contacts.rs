@@ -4,28 +4,90 @@ use num_traits::Zero;
 
 use super::reader::Reader;
 use super::references::{self, NO_COORDINATE};
-use super::section::{Section, keyword};
+use super::section::{Item, Section, keyword};
 use super::{names, parameters, tables};
 use crate::diagnostics::Related;
+use crate::keys::{CONTACT, CONTACT_SIDE};
 use crate::validate::{Owner, Place};
-use crate::{Contact, Force, ForceKind, Joint, Number, Output, OutputKind, Parameter, Rational};
+use crate::{Contact, Element, Force, ForceKind, Joint, Number, Output, OutputKind, Parameter, Rational};
 
-/// Reads all contacts; their inputs come after so many others.
-pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, n_inputs: usize) -> Vec<Contact> {
-    let sections = tables::each(reader, page, "contact", Owner::Contact).into_iter().enumerate();
-    let contacts: Vec<Contact> =
-        sections.map(|(index, (section, name))| contact(reader, &section, name, n_inputs + index)).collect();
+/// Reads all contacts: those on joint coordinates, whose inputs come after so many others, and those between bodies,
+/// which are elements.
+pub(super) fn read(
+    reader: &mut Reader<'_>,
+    page: &Section<'_>,
+    n_inputs: usize,
+) -> (Vec<Contact>, Vec<Element>) {
+    let written = page.get("contact").into_iter().flat_map(Item::elements);
+    let mut counts = [0; 2];
+    let owners = written.map(|item| {
+        let is_between = item.value.get_ref().as_table().is_some_and(|table| table.contains_key("between"));
+        let count = &mut counts[usize::from(is_between)];
+        *count += 1;
+        if is_between { Owner::Element(*count - 1) } else { Owner::Contact(*count - 1) }
+    });
+    let owners: Vec<Owner> = owners.collect();
+    let owner = |index: usize| owners.get(index).copied().unwrap_or(Owner::Contact(index));
+    let (mut contacts, mut between): (Vec<Contact>, _) = (Vec::new(), Vec::new());
+    for (section, name) in tables::each(reader, page, "contact", owner) {
+        if section.has("between") {
+            between.push(surfaces(reader, &section, page, name));
+        } else {
+            contacts.push(contact(reader, &section, name, n_inputs + contacts.len()));
+        }
+    }
     for (index, contact) in contacts.iter().enumerate() {
         unlike_inputs(reader, index, contact);
         shared(reader, &contacts[..index], index, contact);
     }
-    contacts
+    (contacts, between)
+}
+
+/// The keys of contacts on joint coordinates alone.
+const ON_JOINTS: [&str; 8] =
+    ["joint", "coordinate", "lower", "upper", "restitution", "friction", "static_friction", "radius"];
+
+/// The keys of contacts between bodies alone.
+const BETWEEN: [&str; 5] = ["stiffness", "exponent", "damping", "stribeck_rate", "rate"];
+
+/// What acts between bodies; the model has it as outputs, formulas and forces.
+fn surfaces(reader: &mut Reader<'_>, section: &Section<'_>, page: &Section<'_>, name: String) -> Element {
+    let message = format!("{} is between bodies", section.title);
+    for key in ON_JOINTS {
+        section.refuse(reader, key, &message, "remove it: it is for contacts on a joint coordinate");
+    }
+    let mut numbers = Vec::new();
+    section.require(reader, "stiffness");
+    for key in ["friction_coefficient", "static_friction_coefficient"].into_iter().chain(BETWEEN) {
+        if section.has(key) {
+            numbers.push((key, section.number(reader, key)));
+        }
+    }
+    if let Some(item) = section.get("between")
+        && item.tables(reader).len() == item.elements().count()
+    {
+        for (item, _) in item.tables(reader) {
+            if let Some(side) = Section::within(reader, item, "a side of a contact", &CONTACT_SIDE) {
+                references::index(reader, &side, "body");
+                side.get("shape").and_then(|item| item.text(reader));
+            }
+        }
+        if let Err(words) = super::surfaces::pairs(page.table(), section.table()) {
+            item.wrong(reader, words);
+        }
+    }
+    Element { name, kind: "", table: &CONTACT, numbers }
 }
 
 fn contact(reader: &mut Reader<'_>, section: &Section<'_>, name: String, input: usize) -> Contact {
     const LEVELS: [&str; 2] = ["friction", "static_friction"];
     const COEFFICIENTS: [&str; 2] = ["friction_coefficient", "static_friction_coefficient"];
+    section.require(reader, "joint");
     let on = references::coordinate(reader, section);
+    let message = format!("{} is on a joint", section.title);
+    for key in BETWEEN {
+        section.refuse(reader, key, &message, "remove it: it is for contacts between bodies");
+    }
     let ends = ["lower", "upper"].map(|key| section.given(reader, key));
     let has_stops = section.has("lower") || section.has("upper");
     if !has_stops && !LEVELS.iter().chain(&COEFFICIENTS).any(|key| section.has(key)) {

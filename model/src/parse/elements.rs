@@ -9,24 +9,23 @@ use crate::keys::{COUPLER_END, Value, lacking};
 use crate::validate::Owner;
 use crate::{Element, Number};
 
-/// Reads all elements.
-pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>) -> Vec<Element> {
-    let mut sections = tables::each(reader, page, "element", Owner::Element);
-    let before = sections.len();
-    sections.extend(tables::each(reader, page, "rolling", |index| Owner::Element(before + index)));
-    let sections = sections.into_iter().enumerate();
-    let read = |(index, (section, name))| element(reader, section, (index, name), index >= before);
-    sections.map(read).collect()
+/// Reads all elements, behind those that are known.
+pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, mut all: Vec<Element>) -> Vec<Element> {
+    for what in ["element", "rolling"] {
+        let before = all.len();
+        let sections = tables::each(reader, page, what, |index| Owner::Element(before + index));
+        for (section, name) in sections {
+            let index = all.len();
+            all.push(element(reader, section, (index, name)));
+        }
+    }
+    all
 }
 
-fn element(
-    reader: &mut Reader<'_>,
-    mut section: Section<'_>,
-    (index, name): (usize, String),
-    rolls: bool,
-) -> Element {
+fn element(reader: &mut Reader<'_>, mut section: Section<'_>, (index, name): (usize, String)) -> Element {
+    let table = section.keys;
     let Some(kind) = section.read_kind(reader, |_, _| None) else {
-        return Element { name, kind: "", rolls, numbers: Vec::new() };
+        return Element { name, kind: "", table, numbers: Vec::new() };
     };
     if kind.key("closed").is_some() {
         let twice = format!("{} is along a joint and between points", section.title);
@@ -83,5 +82,5 @@ fn element(
             _ => _ = section.find(reader, key.name),
         }
     }
-    Element { name, kind: kind.word, rolls, numbers }
+    Element { name, kind: kind.word, table, numbers }
 }

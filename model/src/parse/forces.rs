@@ -121,7 +121,7 @@ impl<'s> Reading<'_, '_, 's> {
         let [first, second] = Side::BOTH.map(|side| {
             outputs::frame_at(self.reader, &self.section, (Owner::ForceEnd(self.index, side), side))
         });
-        let own = ["damping", "force", "torsion", "torsional_damping", "torque"];
+        let own = ["damping", "force", "torsion", "torsional_damping", "torque", "moment"];
         if !own.iter().any(|key| self.section.has(key)) {
             self.section.require(self.reader, "stiffness");
         }
@@ -131,7 +131,8 @@ impl<'s> Reading<'_, '_, 's> {
         };
         let along = law(["stiffness", "damping", "force"]);
         let about = law(["torsion", "torsional_damping", "torque"]);
-        ForceKind::Bushing(Box::new(Bushing { first, second, along, about }))
+        let moment = self.section.vector(self.reader, "moment");
+        ForceKind::Bushing(Box::new(Bushing { first, second, along, about, moment }))
     }
 
     /// What acts by the slopes of a formula, which must not be zero for want of names.

@@ -37,6 +37,7 @@ mod shapes;
 mod simulation;
 mod start;
 mod states;
+mod surfaces;
 mod synonyms;
 mod table;
 mod tables;

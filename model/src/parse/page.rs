@@ -36,7 +36,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let taken: Vec<&str> = taken.chain(derived.iter().map(|p| p.name.as_str())).collect();
     lines::follow_inputs(reader, (&mut bodies, &mut drivers), &taken, (&mut inputs, &mut between));
     let n_inputs = inputs.len() + lines::n_inputs((&mut bodies, &mut drivers));
-    let mut contacts = contacts::read(reader, &page, n_inputs);
+    let (mut contacts, surfaces) = contacts::read(reader, &page, n_inputs);
     let taken = contacts.iter().map(|contact| &contact.name).chain(parameters.iter().map(|p| &p.name));
     let taken: Vec<&str> = taken.map(String::as_str).chain(parameters::OWN_FIELDS).collect();
     lines::add_inputs((&mut bodies, &mut drivers), &taken, (&mut inputs, &mut between));
@@ -53,7 +53,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     reader.outputs = outputs.iter().map(|output| output.kind.clone()).collect();
     named_formulas::read(reader, &page);
     let couplers = couplings::couplers(reader, couplings);
-    let elements = elements::read(reader, &page);
+    let elements = elements::read(reader, &page, surfaces);
     outputs::read_formulas(reader, pending, &mut outputs);
     let mut forces = forces::read(reader, sections);
     forces.extend(contacts.iter().map(Contact::own_force));

@@ -7,8 +7,9 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeString, DeTable, DeValue};
 
+use super::surfaces;
 use crate::JointKind;
-use crate::keys::{self, ELEMENT, Kind, ROLLING, lacking};
+use crate::keys::{self, CONTACT, ELEMENT, Kind, ROLLING, SURFACES, lacking};
 
 /// What each kind stands for.
 pub(super) const PRELUDE: &str = include_str!("../prelude.toml");
@@ -24,7 +25,15 @@ pub(super) fn expanded<'t>(file: &Table<'t>) -> (Table<'t>, Vec<Range<usize>>) {
         let tables = elements.into_iter().flat_map(|elements| elements.iter());
         tables.filter_map(move |element| Some((keys, element.get_ref().as_table()?)))
     };
-    let mut elements = of(&ELEMENT).chain(of(&ROLLING)).peekable();
+    let touching: Vec<(&keys::Table, Table<'t>)> = of(&CONTACT)
+        .flat_map(|(_, contact)| {
+            places.extend(contact.values().map(Spanned::span).filter(|_| contact.contains_key("between")));
+            surfaces::pairs(file, contact).unwrap_or_default()
+        })
+        .map(|pair| (&SURFACES, pair))
+        .collect();
+    let touching = touching.iter().map(|(keys, table)| (*keys, table));
+    let mut elements = of(&ELEMENT).chain(of(&ROLLING)).chain(touching).peekable();
     if elements.peek().is_none() {
         return (whole, places);
     }
@@ -63,6 +72,9 @@ const GIVEN: &str = "given";
 /// The key of the prelude that says of which list each two neighbours have a part.
 const EACH: &str = "each";
 
+/// The key of the prelude that says of which list each element has a part: the k-th {it}.
+const EVERY: &str = "every";
+
 /// A formula lacks a number of its element, which is told of the element.
 struct Incomplete;
 
@@ -73,7 +85,7 @@ struct Expansion<'a, 't> {
     table: &'a Table<'t>,
     kind: &'static Kind,
     name: &'a str,
-    /// Two neighbours in a list of it, with how many pairs are before them.
+    /// Two neighbours in a list of it, or one element, with how many are before.
     pair: Option<(usize, &'a [Spanned<DeValue<'t>>])>,
     /// Where its name is: the place of what the model file does not have as it stands.
     place: Range<usize>,
@@ -105,6 +117,9 @@ impl<'a, 't> Expansion<'a, 't> {
     fn parts(&self, part: &Table<'_>) -> Vec<Spanned<DeValue<'t>>> {
         let text = |key: &str| part.get(key).and_then(|value| value.get_ref().as_str());
         let has = |given: &str| {
+            if let Some(key) = given.strip_prefix('!') {
+                return !self.table.contains_key(key);
+            }
             let Some((key, words)) = given.split_once('=') else { return self.table.contains_key(given) };
             let word = match self.table.get(key) {
                 Some(value) => value.get_ref().as_str(),
@@ -115,9 +130,13 @@ impl<'a, 't> Expansion<'a, 't> {
         if text(GIVEN).is_some_and(|given| !has(given)) {
             return Vec::new();
         }
-        let Some(list) = text(EACH) else { return self.filled_table(part).into_iter().collect() };
+        let (list, size) = match (text(EACH), text(EVERY)) {
+            (Some(list), _) => (list, 2),
+            (None, Some(list)) => (list, 1),
+            (None, None) => return self.filled_table(part).into_iter().collect(),
+        };
         let elements = self.table.get(list).and_then(|list| list.get_ref().as_array());
-        let pairs = elements.into_iter().flat_map(|elements| elements.windows(2)).enumerate();
+        let pairs = elements.into_iter().flat_map(|elements| elements.windows(size)).enumerate();
         let filled =
             |(before, pair)| Self { pair: Some((before, pair)), ..self.clone() }.filled_table(part).ok();
         pairs.filter_map(filled).collect()
@@ -125,7 +144,9 @@ impl<'a, 't> Expansion<'a, 't> {
 
     fn filled_table(&self, table: &Table<'_>) -> Result<Spanned<DeValue<'t>>, Incomplete> {
         let mut filled = DeTable::new();
-        for (key, value) in table.iter().filter(|(key, _)| ![GIVEN, EACH].contains(&key.get_ref().as_ref())) {
+        for (key, value) in
+            table.iter().filter(|(key, _)| ![GIVEN, EACH, EVERY].contains(&key.get_ref().as_ref()))
+        {
             if let Some(value) = self.filled(value.get_ref())? {
                 filled.insert(self.here(DeString::from(key.get_ref().to_string())), value);
             }
@@ -190,9 +211,10 @@ impl<'a, 't> Expansion<'a, 't> {
         }
         let mut steps = path.split('.');
         let key = steps.next()?;
-        let mut value = match self.table.get(key) {
-            Some(value) => value.clone(),
-            None => self.default(key)?,
+        let mut value = match (self.table.get(key), self.pair) {
+            (_, Some((_, [it, ..]))) if key == "it" => it.clone(),
+            (Some(value), _) => value.clone(),
+            (None, _) => self.default(key)?,
         };
         for step in steps {
             value = match (value.get_ref(), step) {
@@ -255,7 +277,8 @@ impl<'a, 't> Expansion<'a, 't> {
 
 /// A value as a part of a formula.
 fn in_formula(path: &str, value: &DeValue<'_>) -> Option<String> {
-    let is_name = matches!(path, "name" | "on" | "k" | "before" | "count") || path.ends_with(".on");
+    let is_name =
+        matches!(path, "name" | "on" | "k" | "before" | "count" | "number") || path.ends_with(".on");
     Some(match value {
         DeValue::String(text) if is_name => text.to_string(),
         DeValue::String(text) => format!("({text})"),

@@ -127,6 +127,11 @@ impl<'t> Section<'t> {
         }
     }
 
+    /// What is written.
+    pub(super) fn table(&self) -> &'t DeTable<'t> {
+        self.table
+    }
+
     /// Whether it has no keys but those that it may have.
     pub(super) fn is_known(&self) -> bool {
         let known = self.keys.all();

@@ -2,13 +2,13 @@
 
 use super::numbers::{number, vector};
 use super::reader::Reader;
-use super::section::{Item, Section, cure};
+use super::section::{Item, Section, all, cure};
 use crate::keys::SHAPE;
 use crate::validate::{Owner, out_of_range};
 use crate::{Number, Rational, Shape, ShapeKind};
 use num_traits::{One, Zero};
 
-const KINDS: [&str; 4] = ["box", "cylinder", "sphere", "mesh"];
+const KINDS: [&str; 8] = ["box", "cylinder", "sphere", "capsule", "torus", "plane", "vertices", "mesh"];
 
 /// The extensions of the files that can be drawn, in lower case.
 const MESHES: [&str; 3] = ["stl", "obj", "dae"];
@@ -58,15 +58,15 @@ fn shape(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_>) -> Opti
     if given.len() != 1 {
         let words = match given[..] {
             [] => [
-                format!("{title} is neither box, cylinder, sphere nor mesh"),
-                "needs one of the four".to_owned(),
+                format!("{title} has no form"),
+                format!("needs one of {}", KINDS.join(", ")),
                 "write sphere = 0.1, or box = [0.1, 0.1, 0.1], or cylinder = [0.1, 0.2]: lengths in m, of a cylinder \
                  radius and length; or mesh = \"file.stl\""
                     .to_owned(),
             ],
             _ => [
                 format!("{title} is {} at once", given.join(" and ")),
-                "is one of the four".to_owned(),
+                "is one of them".to_owned(),
                 format!("remove `{}` or `{}`", given[0], given[1]),
             ],
         };
@@ -86,6 +86,10 @@ fn shape(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_>) -> Opti
     let kind = match given[0] {
         "box" => ShapeKind::Box(sizes(reader, section, size)?),
         "cylinder" => ShapeKind::Cylinder(sizes(reader, section, size)?),
+        "capsule" => ShapeKind::Capsule(sizes(reader, section, size)?),
+        "torus" => ShapeKind::Torus(sizes(reader, section, size)?),
+        "plane" => ShapeKind::Plane(sizes(reader, section, size)?),
+        "vertices" => vertices(reader, size)?,
         "mesh" => mesh(reader, size, scale)?,
         _ => {
             let radius = number(reader, size)?;
@@ -145,6 +149,16 @@ fn mesh(reader: &mut Reader<'_>, item: Item<'_>, scale_item: Option<Item<'_>>) -
         return None;
     }
     Some(ShapeKind::Mesh { file: file.to_owned(), scale })
+}
+
+/// Corners, at least one.
+fn vertices(reader: &mut Reader<'_>, item: Item<'_>) -> Option<ShapeKind> {
+    let corners = all(item.elements().map(|row| vector(reader, row)))?;
+    if corners.is_empty() {
+        item.wrong_type_with(reader, "rows of three numbers", "write vertices = [[0, 0, 0]]".to_owned());
+        return None;
+    }
+    Some(ShapeKind::Vertices(corners))
 }
 
 fn sizes<const N: usize>(

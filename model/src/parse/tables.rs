@@ -33,8 +33,10 @@ pub(super) fn each<'t>(
     let item = page.find(reader, what);
     let Some(Item { key: &Key { value: Value::Tables(keys), .. }, .. }) = item else { return Vec::new() };
     let tables: Vec<_> = item.map(|item| item.tables(reader)).unwrap_or_default();
+    // Of contacts those on joints count.
+    let mut counted = tables.iter().filter(|(_, table)| !table.contains_key("between"));
     let most = MOST.iter().find(|(of, ..)| *of == what);
-    if let Some((&(_, most, help), (item, _))) = most.and_then(|most| Some((most, tables.get(most.1)?))) {
+    if let Some((&(_, most, help), (item, _))) = most.and_then(|most| Some((most, counted.nth(most.1)?))) {
         let words = [
             format!("a model has at most {most} {what}s"),
             format!("there are {}", tables.len()),

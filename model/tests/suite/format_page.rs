@@ -25,7 +25,7 @@ fn read(text: &str) -> Result<Model, Diagnostics> {
 }
 
 /// All tables of keys that the document shows.
-const TABLES: [&Table; 22] = [
+const TABLES: [&Table; 23] = [
     &keys::FILE,
     &keys::ATTRACTION,
     &keys::SIMULATION,
@@ -48,6 +48,7 @@ const TABLES: [&Table; 22] = [
     &keys::CONTROLLER,
     &keys::EVENT,
     &keys::CONTACT,
+    &keys::CONTACT_SIDE,
 ];
 
 /// A table of Markdown, without columns that are empty.

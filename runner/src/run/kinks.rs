@@ -21,6 +21,9 @@ const ROUNDINGS: f64 = 32.0;
 /// So many attempts of one step end early for kinks; the rest is left to error control.
 const MOST_ATTEMPTS: u32 = 12;
 
+/// Of an attempt whose error is not tolerated this part, and no more, is repeated where a kink shows within it.
+const SEEN: f64 = 0.125;
+
 /// Where so many steps within this part of the run have ended at one kink, the motion stays there.
 const ENDS: u32 = 64;
 const BRIEF: f64 = 1e-3;
@@ -208,6 +211,10 @@ impl<'a, M: Partition<Scalar: Real> + Clone> Run<'a, M> {
                 (kink, place * (to - from))
             });
             let (kink, way) = places.min_by(|a, b| a.1.total_cmp(&b.1))?;
+            // What is seen at the beginning of an attempt that has gone far astray may not be there.
+            if way < SEEN * (to - from) && !attempt.fits() {
+                return Some(from + (SEEN * (to - from)).max(4.0 * least));
+            }
             laws.ahead = Some((kink, from + way));
             Some(if way > 2.0 * least { from + way * (1.0 - MARGIN) } else { from + 4.0 * least })
         };

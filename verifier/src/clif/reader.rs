@@ -211,7 +211,7 @@ impl Reader<'_> {
                 let value = float(text).ok_or_else(|| refused(line))?;
                 return Ok(Held::Number(self.nodes.literal(value)));
             }
-            ["iconst", text] => return text.parse().map(Held::Whole).map_err(|_| refused(line)),
+            ["iconst", text] => return whole(text).map(Held::Whole).ok_or_else(|| refused(line)),
             ["load", "notrap", "aligned", address] => return self.load(address, line).map(Held::Number),
             ["icmp", "eq", a, b] => match (self.value(a, line)?, self.value(b, line)?) {
                 (Held::Whole(a), Held::Whole(b)) => return Ok(Held::Truth(a == b)),
@@ -277,7 +277,7 @@ impl Reader<'_> {
     /// `v6+8`: array and element.
     fn place(&self, address: &str, line: &Line<'_>) -> Result<(Array, usize), Refusal> {
         let (name, offset) = address.split_once('+').unwrap_or((address, "0"));
-        let offset: i64 = offset.parse().map_err(|_| refused(line))?;
+        let offset = whole(offset).ok_or_else(|| refused(line))?;
         let Held::Address(array, at) = self.value(name, line)? else { return Err(refused(line)) };
         let at = usize::try_from(at + offset).map_err(|_| refused(line))?;
         if at % 8 == 0 { Ok((array, at / 8)) } else { Err(refused(line)) }
@@ -327,6 +327,14 @@ fn bare(place: usize, word: &str) -> &str {
     typed.filter(|_| place == 0).unwrap_or(word)
 }
 
+/// `-8`, `9999`, `0x2710`, `0x0001_2345`: what a whole number looks like.
+fn whole(text: &str) -> Option<i64> {
+    match text.strip_prefix("0x") {
+        Some(digits) => i64::from_str_radix(&digits.replace('_', ""), 16).ok(),
+        None => text.parse().ok(),
+    }
+}
+
 /// `0.0`, `-0x1.8000000000000p3`: what a finite number looks like.
 fn float(text: &str) -> Option<f64> {
     let (sign, text) = text.strip_prefix('-').map_or((0, text), |rest| (1 << 63, rest));
@@ -347,7 +355,16 @@ fn float(text: &str) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::float;
+    use super::{float, whole};
+
+    #[test]
+    fn whole_numbers_are_read_as_they_are_written() {
+        let checks = [("-8", -8), ("9999", 9999), ("0x2710", 10_000), ("0x0001_2345", 74_565)];
+        for (text, value) in checks {
+            assert_eq!(whole(text), Some(value), "{text}");
+        }
+        assert_eq!(whole("0xfffg"), None);
+    }
 
     #[test]
     fn numbers_are_read_to_the_last_bit() {

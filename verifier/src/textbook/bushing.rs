@@ -31,6 +31,25 @@ impl<F: Field> Evaluation<'_, F> {
             let load = self.load_of_bushing(bushing, end, &together)?;
             forces.push(frame.body, &load);
         }
+        self.add_moment(forces, bushing, Own::Frames([&places, &rates]))
+    }
+
+    /// A torque by the axes of the first frame.
+    fn add_moment(&self, forces: &mut Forces<F>, bushing: &Bushing, own: Own<'_, F>) -> Option<()> {
+        let [i, j] = bushing.ends().map(|frame| &self.moving[frame.body]);
+        let [x, y, z] = bushing.moment.each_ref().map(|number| self.strength_of(number, own));
+        let by_frame = Vector([x?, y?, z?]);
+        let in_body = match &bushing.first.orientation {
+            Some(own) => self.scope.rotation(&self.scope.unit(own)?).apply(&by_frame),
+            None => by_frame,
+        };
+        let torque = i.pose.a.apply(&in_body);
+        let [on_first, on_second] = [(i, -torque.clone()), (j, torque)]
+            .map(|(body, torque)| Load::torque(body, &self.scope, &torque));
+        forces.power = &forces.power + on_first.power(i) + on_second.power(j);
+        let [first, second] = bushing.ends().map(|frame| frame.body);
+        forces.push(first, &on_first);
+        forces.push(second, &on_second);
         Some(())
     }
 
@@ -95,9 +114,13 @@ impl<F: Field> Evaluation<'_, F> {
         Pose { r: Vector(r), a: self.scope.rotation(&p), p }
     }
 
-    /// x, y, z and the Cardan angles; `None` where these are not defined.
+    /// x, y, z and the Cardan angles; `None` where these are not defined. What has nothing about them is not asked.
     fn readings_between(&self, bushing: &Bushing, poses: &[Pose<F>; 2]) -> Option<Six<F>> {
         let [x, y, z] = self.place_between(bushing.ends(), poses.each_ref())?.0;
+        if !self.has_angles(bushing) {
+            let [a, b, c] = from_fn(|_| self.scope.zero.clone());
+            return Some([x, y, z, a, b, c]);
+        }
         let [x_of_x, x_of_y, x_of_z, y_of_z, z_of_z] = self.turned(bushing, poses)?;
         let cosine = self.scope.sqrt(&(&y_of_z * &y_of_z + &z_of_z * &z_of_z))?;
         // tan(a/2) = sin a / (1 + cos a), but at half a turn.
@@ -107,6 +130,17 @@ impl<F: Field> Evaluation<'_, F> {
         };
         let about_y = self.scope.atan2(&x_of_z, &cosine)?;
         Some([x, y, z, twice(-y_of_z, &z_of_z)?, about_y, twice(-x_of_y, &x_of_x)?])
+    }
+
+    fn has_angles(&self, bushing: &Bushing) -> bool {
+        let model = self.textbook.model;
+        let is_told = |output: &Output| match output.kind {
+            OutputKind::Bushing { force } => {
+                matches!(&model.forces[force].kind, ForceKind::Bushing(other) if std::ptr::eq(&raw const **other, bushing))
+            }
+            _ => false,
+        };
+        bushing.has_angles() || model.outputs.iter().any(is_told)
     }
 
     /// Entries of the matrix of the second frame's axes, by those of the first: xx, xy, xz, yz, zz.
@@ -134,6 +168,9 @@ impl Evaluation<'_, f64> {
 
     /// Whether the Cardan angles are defined, and not for rounding alone.
     pub(super) fn is_clear(&self, bushing: &Bushing) -> bool {
+        if !self.has_angles(bushing) {
+            return true;
+        }
         let poses = bushing.ends().map(|frame| self.moving[frame.body].pose.clone());
         self.turned(bushing, &poses).is_some_and(|turned| {
             let [x_of_x, _, _, y_of_z, z_of_z] = turned.map(|entry| entry.value);

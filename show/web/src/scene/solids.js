@@ -1,8 +1,9 @@
 // From parts to meshes.
 import {
-  BoxGeometry, BufferGeometry, Color, ConeGeometry, CylinderGeometry, Float32BufferAttribute, Group, LatheGeometry, Matrix4,
+  BoxGeometry, BufferGeometry, CapsuleGeometry, Color, ConeGeometry, CylinderGeometry, Float32BufferAttribute, Group, LatheGeometry, Matrix4,
   Mesh, MeshStandardMaterial, PlaneGeometry, Quaternion, SphereGeometry, TorusGeometry, TubeGeometry, Curve, Vector2, Vector3,
 } from 'three';
+import { ConvexGeometry } from 'three/addons/geometries/ConvexGeometry.js';
 import { toCreasedNormals } from 'three/addons/utils/BufferGeometryUtils.js';
 import { across as anyAcross, add, cross, dot, middle } from '../vector.js';
 
@@ -199,10 +200,23 @@ const MAKERS = {
       made.scale.set(...part.size);
       return made;
     }
-    const geometry = part.kind === 'box' ? new BoxGeometry(...part.size)
-      : part.kind === 'sphere' ? new SphereGeometry(part.size[0], 36, 24)
-        : new CylinderGeometry(part.size[0], part.size[0], part.size[1], 48).rotateX(Math.PI / 2);
+    const geometry = FORMS[part.kind](part.size);
     return mesh(geometry, materials.body, part.position, new Quaternion(x, y, z, w));
+  },
+};
+
+// By the numbers that each kind of shape has.
+const FORMS = {
+  box: (size) => new BoxGeometry(...size),
+  sphere: ([radius]) => new SphereGeometry(radius, 36, 24),
+  cylinder: ([radius, length]) => new CylinderGeometry(radius, radius, length, 48).rotateX(Math.PI / 2),
+  capsule: ([radius, length]) => new CapsuleGeometry(radius, length, 12, 36).rotateX(Math.PI / 2),
+  torus: ([radius, rim]) => new TorusGeometry(radius, rim, 20, 72),
+  // As thick as it can be seen, below the plane.
+  plane: ([a, b]) => new BoxGeometry(a, b, 0.004 * Math.max(a, b)).translate(0, 0, -0.002 * Math.max(a, b)),
+  vertices: (numbers) => {
+    const points = Array.from({ length: numbers.length / 3 }, (_, k) => new Vector3(...numbers.slice(3 * k, 3 * k + 3)));
+    return points.length > 3 ? new ConvexGeometry(points) : new SphereGeometry(0.005, 12, 8).translate(...numbers.slice(0, 3));
   },
 };
 
