@@ -27,7 +27,15 @@ impl Build {
     }
 
     pub(super) fn call(&mut self, function: Function, operands: [usize; 2]) -> usize {
-        self.push(Operation::Call(function, operands))
+        let value = match (self.number(operands[0]), function) {
+            (Some(Number::Exact(x)), Function::Abs) => Some(x.abs()),
+            (Some(Number::Exact(x)), Function::Floor) => Some(x.floor()),
+            _ => None,
+        };
+        match value {
+            Some(value) => self.exact(value),
+            None => self.push(Operation::Call(function, operands)),
+        }
     }
 
     pub(super) fn negative(&mut self, a: usize) -> usize {
@@ -65,6 +73,9 @@ impl Build {
     pub(super) fn where_positive(&mut self, margin: usize, [a, b]: [usize; 2]) -> usize {
         if a == b {
             return a;
+        }
+        if let Some(Number::Exact(margin)) = self.number(margin) {
+            return if margin.is_positive() { a } else { b };
         }
         let zero = self.integer(0);
         let taken = if a == zero { zero } else { self.call(Function::When, [margin, a]) };

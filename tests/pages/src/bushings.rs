@@ -79,6 +79,10 @@ fn strengths(dice: &mut Dice) -> String {
             }
         }
     }
+    if dice.once_in(3) {
+        let values = [(); 3].map(|()| strength(dice, "moment"));
+        keys += &format!("moment = {}\n", list(&values));
+    }
     keys
 }
 
@@ -92,7 +96,7 @@ fn strength(dice: &mut Dice, key: &str) -> String {
             let is_damping = key.ends_with("damping");
             format!("{:?}", if is_damping { format!("0.1 + ({formula})^2") } else { formula })
         }
-        "force" | "torque" => dice.signed(),
+        "force" | "torque" | "moment" => dice.signed(),
         _ => dice.number(),
     }
 }

@@ -24,6 +24,7 @@ mod loops;
 mod page;
 mod pairs;
 mod ready;
+mod touching;
 mod vector;
 
 use dice::Dice;
@@ -70,6 +71,7 @@ fn text(mut page: Page, seed: u64) -> String {
     page.curves(seed);
     page.bushings(seed);
     page.ready(seed);
+    page.touching(seed);
     page.read();
     page.text()
 }

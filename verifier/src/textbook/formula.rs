@@ -43,6 +43,26 @@ enum Condition<F> {
     Or(Box<Condition<F>>, Box<Condition<F>>),
 }
 
+impl<F> Condition<F> {
+    /// Whether it holds, where numbers alone decide that.
+    fn decided(&self) -> Option<bool> {
+        match self {
+            Self::Positive(margin) => margin.exact.as_ref().map(Signed::is_positive),
+            Self::Not(inner) => inner.decided().map(|holds| !holds),
+            Self::And(p, q) => match [p.decided(), q.decided()] {
+                [Some(false), _] | [_, Some(false)] => Some(false),
+                [Some(true), other] | [other, Some(true)] => other,
+                _ => None,
+            },
+            Self::Or(p, q) => match [p.decided(), q.decided()] {
+                [Some(true), _] | [_, Some(true)] => Some(true),
+                [Some(false), other] | [other, Some(false)] => other,
+                _ => None,
+            },
+        }
+    }
+}
+
 /// The value of a formula; `None` where it is not defined.
 pub(super) fn value<F: Field>(
     model: &Model,
@@ -300,8 +320,18 @@ impl<'t, F: Field> Text<'t, '_, F> {
         }
         if name == "if" {
             let [condition, a, b] = <[Term<F>; 3]>::try_from(operands).ok()?;
-            let (a, b) = (a.number()?.jet, b.number()?.jet);
-            return Some(moving(self.choose(&condition.condition()?, &a, &b)));
+            let (condition, a, b) = (condition.condition()?, a.number()?, b.number()?);
+            return Some(match condition.decided() {
+                _ if a.exact.is_some() && a.exact == b.exact => a,
+                Some(holds) => {
+                    if holds {
+                        a
+                    } else {
+                        b
+                    }
+                }
+                None => moving(self.choose(&condition, &a.jet, &b.jet)),
+            });
         }
         let operands = operands.into_iter().map(Term::number).collect::<Option<Vec<_>>>()?;
         match (name, operands.as_slice()) {
@@ -309,7 +339,9 @@ impl<'t, F: Field> Text<'t, '_, F> {
             ("hypot", [a, b]) => self.hypot(a, b),
             ("ramp", [z, width]) => {
                 let root = self.root(&self.squares(z, width)?)?;
-                Some(moving((&z.jet + &root.jet) * &self.scope.half))
+                let half = self.constant(Rational::new(1.into(), 2.into()));
+                let double = self.of_both(z, &root, |a, b| a + b, |a, b| Some(a + b))?;
+                self.times(&half, &double)
             }
             ("asin" | "acos", [x]) => {
                 let one = self.constant(Rational::from_integer(1.into()));
