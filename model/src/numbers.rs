@@ -70,7 +70,7 @@ impl Attraction {
 impl Shape {
     fn add_numbers<'m>(&'m self, numbers: &mut Vec<&'m Number>) {
         match &self.kind {
-            ShapeKind::Box(sides) => numbers.extend(sides),
+            ShapeKind::Box(sides) | ShapeKind::Ellipsoid(sides) => numbers.extend(sides),
             ShapeKind::Cylinder(sizes)
             | ShapeKind::Capsule(sizes)
             | ShapeKind::Torus(sizes)

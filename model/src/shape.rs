@@ -26,6 +26,8 @@ pub enum ShapeKind {
     Sphere(Number),
     /// Radius, and length between the centres of its round ends, m; its axis is z.
     Capsule([Number; 2]),
+    /// Half of its length along x, y and z, m.
+    Ellipsoid([Number; 3]),
     /// Radius of the rim's centre line, and that of the rim, m; its axis is z.
     Torus([Number; 2]),
     /// The plane of x and y, and edges of what is drawn of it, m.

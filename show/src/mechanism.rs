@@ -64,7 +64,7 @@ pub enum Support {
 /// A solid or a surface that is part of a body's look.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shape {
-    /// `box`, `cylinder` (its axis is z), `sphere`, `capsule`, `torus`, `plane`, `vertices` or `mesh`.
+    /// `box`, `cylinder` (its axis is z), `sphere`, `capsule`, `ellipsoid`, `torus`, `plane`, `vertices` or `mesh`.
     pub kind: &'static str,
     /// Its sizes as model files have them, m; all coordinates of vertices. Of a mesh, by what its coordinates are
     /// multiplied to be in m.

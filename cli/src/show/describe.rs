@@ -73,6 +73,7 @@ fn drawn(model: &Model, meshes: &Meshes, shape: &Shape) -> gyro_show::Shape {
         ShapeKind::Box(edges) => ("box", model.values(edges).to_vec()),
         ShapeKind::Cylinder(sizes) => ("cylinder", model.values(sizes).to_vec()),
         ShapeKind::Capsule(sizes) => ("capsule", model.values(sizes).to_vec()),
+        ShapeKind::Ellipsoid(sizes) => ("ellipsoid", model.values(sizes).to_vec()),
         ShapeKind::Torus(sizes) => ("torus", model.values(sizes).to_vec()),
         ShapeKind::Plane(sizes) => ("plane", model.values(sizes).to_vec()),
         ShapeKind::Vertices(corners) => {

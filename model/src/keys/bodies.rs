@@ -118,6 +118,7 @@ pub static SHAPE: Table = Table::new("shape", "A box, a cylinder, a sphere and t
     number("sphere", "m", "radius").positive(""),
     Key::new("capsule", Value::Numbers(2, "m"), "radius, and length between the centres of its round ends; its axis is z")
         .positive(""),
+    vector("ellipsoid", "m", "half of its length along x, y and z").positive(""),
     Key::new("torus", Value::Numbers(2, "m"), "radius of its rim's centre line, and that of the rim; its axis is z")
         .positive(""),
     Key::new("plane", Value::Numbers(2, "m"), "edges of what is drawn of it; it has no end, and z points away from it")

@@ -93,6 +93,26 @@ pub static ELEMENT: Table = Table::new(
         ],
     ),
     kind(
+        "tyre",
+        "a wheel that yields on a plane, as a law: it is pushed by `stiffness` · δ + `damping` · δ̇ where it is lower than \
+         the plane by δ, never pulled; its slip s along and its slip across follow the velocity u with which it slips by \
+         `relaxation` · ṡ = −u − abs(v) s, v the velocity of its centre along, and the forces are the slip stiffnesses \
+         times these, F/√(1 + (F/(`friction_coefficient` N))²) together; states `NAME_slip_along` and \
+         `NAME_slip_across`, outputs `NAME_normal`, `NAME_along` and `NAME_across`",
+        &[
+            SURFACE,
+            ON_IT,
+            number("radius", "m", "from its axis to the plane, unloaded").positive("nothing would roll").required(),
+            AXIS,
+            number("stiffness", "N/m", "").positive("it would exert no force").required(),
+            number("damping", "N.s/m", "").not_negative(LOSES).or("0"),
+            number("along_stiffness", "N", "force along for a slip of 1").not_negative(LOSES).required(),
+            number("across_stiffness", "N", "force across for a slip of 1, or 1 rad").not_negative(LOSES).required(),
+            number("relaxation", "m", "way over which slip builds up").positive("slip would jump").required(),
+            number("friction_coefficient", "", "").positive("it would not hold").or("1"),
+        ],
+    ),
+    kind(
         "drag",
         "−½ `density` · `area` · `coefficient` · abs(v) v at a point of a body, v its velocity less that of the wind; \
          output `NAME_air`",
@@ -244,6 +264,16 @@ pub static ROLLING: Table = Table::new(
         &[SURFACE, ON_IT, RADIUS, AXIS, GRIP],
     ),
     kind(
+        "ellipsoid",
+        "an ellipsoid on a plane; along is x of the surface, across is y",
+        &[
+            SURFACE,
+            Key { value: super::Value::Table(&BUSHING_END), ..ON_IT },
+            vector("semi_axes", "m", "half of its length along x, y and z of its frame").required(),
+            GRIP,
+        ],
+    ),
+    kind(
         "skate",
         "an edge on a plane, at a point of the body; along is where it points",
         &[
@@ -274,6 +304,7 @@ pub static ROLLING: Table = Table::new(
 /// How shapes touch: what `[[contact]]` between bodies comes to. Their first is the surface that is touched.
 pub(crate) static SURFACES: Table = Table::new("contact", "A pair of shapes.", &[]).of_kinds(&[
     kind("points", "points of a body, or balls about them, on a plane", super::CONTACT.keys),
+    kind("ellipsoid", "an ellipsoid on a plane", super::CONTACT.keys),
     kind("rims", "round rims on a plane", super::CONTACT.keys),
     kind("on_sphere", "a ball on a ball", super::CONTACT.keys),
     kind("on_capsule", "a ball on a capsule", super::CONTACT.keys),

@@ -8,7 +8,8 @@ use crate::validate::{Owner, out_of_range};
 use crate::{Number, Rational, Shape, ShapeKind};
 use num_traits::{One, Zero};
 
-const KINDS: [&str; 8] = ["box", "cylinder", "sphere", "capsule", "torus", "plane", "vertices", "mesh"];
+const KINDS: [&str; 9] =
+    ["box", "cylinder", "sphere", "capsule", "ellipsoid", "torus", "plane", "vertices", "mesh"];
 
 /// The extensions of the files that can be drawn, in lower case.
 const MESHES: [&str; 3] = ["stl", "obj", "dae"];
@@ -87,6 +88,7 @@ fn shape(reader: &mut Reader<'_>, section: &Section<'_>, item: Item<'_>) -> Opti
         "box" => ShapeKind::Box(sizes(reader, section, size)?),
         "cylinder" => ShapeKind::Cylinder(sizes(reader, section, size)?),
         "capsule" => ShapeKind::Capsule(sizes(reader, section, size)?),
+        "ellipsoid" => ShapeKind::Ellipsoid(sizes(reader, section, size)?),
         "torus" => ShapeKind::Torus(sizes(reader, section, size)?),
         "plane" => ShapeKind::Plane(sizes(reader, section, size)?),
         "vertices" => vertices(reader, size)?,

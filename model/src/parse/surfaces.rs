@@ -33,7 +33,7 @@ struct Surface<'a, 't> {
 }
 
 /// The kinds of shape that can touch another.
-const KINDS: [&str; 7] = ["plane", "sphere", "capsule", "cylinder", "box", "torus", "vertices"];
+const KINDS: [&str; 8] = ["plane", "sphere", "capsule", "cylinder", "box", "ellipsoid", "torus", "vertices"];
 
 /// The pairs of a contact, as tables of the prelude's kinds.
 pub(super) fn pairs<'t>(file: &Table<'t>, contact: &Table<'t>) -> Result<Vec<Table<'t>>, Words> {
@@ -158,6 +158,12 @@ fn pair<'t>(first: Surface<'_, 't>, second: Surface<'_, 't>) -> Option<Table<'t>
         ("plane", "torus") => {
             put(&mut pair, "rim", size(&second, 1)?);
             ("rims", vec![zero()])
+        }
+        ("plane", "ellipsoid") => {
+            for (k, key) in ["semi_x", "semi_y", "semi_z"].into_iter().enumerate() {
+                put(&mut pair, key, size(&second, k)?);
+            }
+            ("ellipsoid", vec![zero()])
         }
         ("plane", "cylinder") => {
             put(&mut pair, "rim", zero());

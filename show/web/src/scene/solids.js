@@ -211,6 +211,7 @@ const FORMS = {
   sphere: ([radius]) => new SphereGeometry(radius, 36, 24),
   cylinder: ([radius, length]) => new CylinderGeometry(radius, radius, length, 48).rotateX(Math.PI / 2),
   capsule: ([radius, length]) => new CapsuleGeometry(radius, length, 12, 36).rotateX(Math.PI / 2),
+  ellipsoid: (size) => new SphereGeometry(1, 48, 32).scale(...size),
   torus: ([radius, rim]) => new TorusGeometry(radius, rim, 20, 72),
   // As thick as it can be seen, below the plane.
   plane: ([a, b]) => new BoxGeometry(a, b, 0.004 * Math.max(a, b)).translate(0, 0, -0.002 * Math.max(a, b)),
