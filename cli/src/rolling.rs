@@ -5,7 +5,7 @@ use gyro_runner::Sample;
 
 /// Rows hold with whatever force that takes: where it becomes a pull, the body would lift.
 pub(crate) fn that_lift(scene: &Scene, samples: &[Sample]) -> Vec<String> {
-    let elements = scene.model.elements.iter().filter(|element| element.table.name == "rolling");
+    let elements = scene.model.elements.iter().filter(|element| element.table == "rolling");
     let lifts = |name: &str| {
         let mut columns = scene.model.outputs.iter().flat_map(|output| {
             let n_columns = output.kind.columns().len();

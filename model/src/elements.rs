@@ -1,6 +1,5 @@
 //! What acts between and on bodies besides joints: drivers, forces; and outputs.
 
-use crate::keys::Table;
 use crate::{BodyFrame, Bushing, CoordinateUse, Formula, JointCoordinate, Motion, Number, Relative, Seen};
 use std::slice::from_ref;
 
@@ -31,8 +30,8 @@ pub struct Element {
     pub name: String,
     /// The word of its kind.
     pub kind: &'static str,
-    /// The table of the model file that it is in.
-    pub table: &'static Table,
+    /// The table of the model file that it is in: `element`, `rolling` or `contact`.
+    pub table: &'static str,
     /// What it was told, by its keys: of a vector each number.
     pub numbers: Vec<(&'static str, Number)>,
 }

@@ -152,6 +152,9 @@ const FAULTS: &[Fault] = &[
     fault("derive/between.rs", "mount", "graph.atan2(xz, «cosine»)", "zz"),
     fault("derive/bushings.rs", "mount", "forces[k] = «graph.sub(working, pull)»;", "graph.add(working, pull)"),
     fault("derive/bushings.rs", "mount", "let (energy, done) = («graph.mul(half, double)», graph", "double"),
+    fault("derive/bushings.rs", "mount", "let turned = «system.graph.dot(&moment, &between.seen.spin)»;", "Graph::ZERO"),
+    fault("derive/bushings.rs", "mount", "power = «system.graph.add(power, turned)»;", "system.graph.sub(power, turned)"),
+    fault("derive/between.rs", "mount", "zip(about).fold(«moment», |sum", "[Graph::ZERO; 3]"),
     fault("derive/laws.rs", "mount", "(Seen::BetweenRate(k), Own::Frames([_, rates])) => «rates[k]»,", "Graph::ZERO"),
     // The solve of eq. (17).
     fault("solve/motion_subspace.rs", "bob", "let (of_a, of_b) = (graph.cross(b, h), «graph.cross(h, a)»);", "graph.cross(a, h)"),

@@ -29,6 +29,7 @@ mod rolling_bodies;
 mod states;
 mod stops;
 mod support;
+mod tops;
 mod touching;
 mod verdicts;
 

@@ -76,7 +76,7 @@ fn surfaces(reader: &mut Reader<'_>, section: &Section<'_>, page: &Section<'_>, 
             item.wrong(reader, words);
         }
     }
-    Element { name, kind: "", table: &CONTACT, numbers }
+    Element { name, kind: "", table: CONTACT.name, numbers }
 }
 
 fn contact(reader: &mut Reader<'_>, section: &Section<'_>, name: String, input: usize) -> Contact {

@@ -23,7 +23,7 @@ pub(super) fn read(reader: &mut Reader<'_>, page: &Section<'_>, mut all: Vec<Ele
 }
 
 fn element(reader: &mut Reader<'_>, mut section: Section<'_>, (index, name): (usize, String)) -> Element {
-    let table = section.keys;
+    let table = section.keys.name;
     let Some(kind) = section.read_kind(reader, |_, _| None) else {
         return Element { name, kind: "", table, numbers: Vec::new() };
     };

@@ -6,7 +6,9 @@ use num_traits::{Signed, Zero};
 
 use super::inertia::is_left_out;
 use super::{Owner, ParameterRule, Place, Problem, shown};
-use crate::keys::{ATTRACTION, BODY, CONTACT, CONTROLLER, COUPLER, FORCE, JOINT, Key, Range};
+use crate::keys::{
+    ATTRACTION, BODY, CONTACT, CONTROLLER, COUPLER, ELEMENT, FORCE, JOINT, Key, ROLLING, Range,
+};
 use crate::{
     Attraction, Body, Contact, Controller, Coupler, Element, Force, Joint, JointKind, Model, Number, Rational,
 };
@@ -89,7 +91,8 @@ impl<'m> Ranged<'m> {
     }
 
     pub(super) fn of_element(index: usize, element: &'m Element) -> Self {
-        let table = element.table;
+        let tables = [&ELEMENT, &ROLLING, &CONTACT];
+        let table = tables.into_iter().find(|table| table.name == element.table).unwrap_or(&ELEMENT);
         let keys = table.kind(element.kind).map_or(table.keys, |kind| kind.keys);
         let numbers = element.numbers.iter().map(|(name, number)| (*name, number));
         Self::new((Owner::Element(index), format!("{} `{}`", table.name, element.name)), keys, numbers)

@@ -1,11 +1,13 @@
 //! Formulas of the model file, read anew from their text: the grammar and the meaning of each function are typed here a
 //! second time.
 
+mod conditions;
 mod constants;
 
 use super::jet::Jet;
 use super::scope::Scope;
 use crate::field::Field;
+use conditions::Condition;
 use constants::{UNITS, of_constants};
 use gyro_model::{Beyond, Curve, Model, Number, Rational, Seen, column, parse_decimal, pi, root};
 use num_traits::{Signed, Zero};
@@ -32,35 +34,6 @@ struct Value<F> {
 enum Term<F> {
     Number(Value<F>),
     Condition(Condition<F>),
-}
-
-/// A condition.
-enum Condition<F> {
-    /// The number is greater than zero.
-    Positive(Value<F>),
-    Not(Box<Condition<F>>),
-    And(Box<Condition<F>>, Box<Condition<F>>),
-    Or(Box<Condition<F>>, Box<Condition<F>>),
-}
-
-impl<F> Condition<F> {
-    /// Whether it holds, where numbers alone decide that.
-    fn decided(&self) -> Option<bool> {
-        match self {
-            Self::Positive(margin) => margin.exact.as_ref().map(Signed::is_positive),
-            Self::Not(inner) => inner.decided().map(|holds| !holds),
-            Self::And(p, q) => match [p.decided(), q.decided()] {
-                [Some(false), _] | [_, Some(false)] => Some(false),
-                [Some(true), other] | [other, Some(true)] => other,
-                _ => None,
-            },
-            Self::Or(p, q) => match [p.decided(), q.decided()] {
-                [Some(true), _] | [_, Some(true)] => Some(true),
-                [Some(false), other] | [other, Some(false)] => other,
-                _ => None,
-            },
-        }
-    }
 }
 
 /// The value of a formula; `None` where it is not defined.
@@ -321,15 +294,9 @@ impl<'t, F: Field> Text<'t, '_, F> {
         if name == "if" {
             let [condition, a, b] = <[Term<F>; 3]>::try_from(operands).ok()?;
             let (condition, a, b) = (condition.condition()?, a.number()?, b.number()?);
-            return Some(match condition.decided() {
-                _ if a.exact.is_some() && a.exact == b.exact => a,
-                Some(holds) => {
-                    if holds {
-                        a
-                    } else {
-                        b
-                    }
-                }
+            return Some(match condition.takes_first([&a, &b]) {
+                Some(true) => a,
+                Some(false) => b,
                 None => moving(self.choose(&condition, &a.jet, &b.jet)),
             });
         }
