@@ -27,7 +27,7 @@ fn below(folder: &Path, found: &mut Vec<PathBuf>) {
 const FAST: [&str; 4] = ["--engine", "jit", "--effort", "quick"];
 
 /// Scenes whose dampers, bushings or bristles are hard: the others take explicit methods fewer steps.
-const STIFF: [&str; 3] = ["four_bar_bushing", "gyroscope_overdamped", "stick_slip"];
+const STIFF: [&str; 5] = ["balls", "crates", "four_bar_bushing", "gyroscope_overdamped", "stick_slip"];
 
 fn runs_well(path: &Path) {
     let (folder, page) =

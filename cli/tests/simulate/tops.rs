@@ -3,7 +3,8 @@
 
 use crate::rolling::kutta;
 use crate::rolling_bodies::{EXACT, FORMS, near, number, told};
-use crate::touching::{GROUND, V, cross, dot, run};
+use crate::support::{Folder, json, model};
+use crate::touching::{V, cross, dot, run};
 
 /// A tippe top: a ball whose mass centre is not in its middle. What pushes and drags it at its lowest point leaves
 /// Jellett's constant as it is, its angular momentum times the way from its mass centre to that point; and it turns
@@ -11,14 +12,6 @@ use crate::touching::{GROUND, V, cross, dot, run};
 #[test]
 fn a_tippe_top_turns_over() {
     let (r, off, across, about): (f64, f64, f64, f64) = (0.02, 0.002, 9e-7, 8e-7);
-    let page = format!(
-        "{GROUND}[[body]]\nname = \"top\"\nfree = true\nmass = 0.006\ninertia = [{across:?}, {across:?}, {about:?}]\n\
-         position = [0, 0, {:?}]\norientation = [1, 0.05, 0, 0]\nangular_velocity = [0, 0, 160]\n[[body.shape]]\nsphere = {r}\n\
-         position = [0, 0, {off}]\n[[contact]]\nname = \"foot\"\nbetween = [{{ body = \"ground\" }}, {{ body = \"top\" }}]\n\
-         stiffness = 1e4\nexponent = 1\ndamping = 0.5\nfriction_coefficient = 0.3\nrate = 0.01\n",
-        r - off * 0.995,
-    )
-    .replace("name = \"touches\"\n", "name = \"touches\"\ngravity = [0, 0, -9.81]\n");
     let constant = |seen: [f64; 18]| {
         let (axis, spin) = ([seen[5], seen[8], seen[11]], [seen[15], seen[16], seen[17]]);
         let own = (about - across) * dot(axis, spin);
@@ -27,8 +20,12 @@ fn a_tippe_top_turns_over() {
         dot(turning, down)
     };
     let ends = ["1e-6", "1.5", "3"].map(|t_end| {
-        let run = run("tippe-top", &page, &["--t-end", t_end, "--tolerance", "1e-12"], &[]);
-        told::<18>(&run, "foot_seen")
+        let folder = Folder::new("tippe-top");
+        let page = model("../examples/contact/tippe-top.toml");
+        told::<18>(
+            &json(&folder, &[&page, "--no-prove", "--t-end", t_end, "--tolerance", "1e-12"]),
+            "foot_seen",
+        )
     });
     let constants = ends.map(constant);
     for later in &constants[1..] {

@@ -3,7 +3,7 @@
 
 use crate::rolling::kutta;
 use crate::rolling_bodies::{EXACT, FORMS, near, number, told};
-use crate::support::{Folder, json, refused, simulate};
+use crate::support::{Folder, json, model, refused, simulate};
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::fs;
@@ -282,7 +282,7 @@ fn elastic_contacts_keep_energy() {
     }
 }
 
-pub(super) const GROUND: &str = "format = 1\nname = \"touches\"\n[[body]]\nname = \"ground\"\nfixed = true\n[[body.shape]]\nplane = [2, 1]\n";
+const GROUND: &str = "format = 1\nname = \"touches\"\n[[body]]\nname = \"ground\"\nfixed = true\n[[body.shape]]\nplane = [2, 1]\n";
 
 pub(super) fn run(name: &str, page: &str, options: &[&str], form: &[&str]) -> Value {
     let folder = Folder::new(&format!("touching-{name}"));
@@ -348,6 +348,21 @@ fn a_box_on_a_slope_slides_as_its_law_says() {
             near([seen[0]], [way], 1e-8);
         }
         near([number(&run, "lies_normal")], [m * g * slope.cos()], 1e-4);
+    }
+}
+
+/// Three crates, one on the other: each creeps on the one below it at the rate at which the one body of
+/// [`a_box_on_a_slope_slides_as_its_law_says`] does.
+#[test]
+fn crates_creep_alike() {
+    let folder = Folder::new("touching-crates");
+    let run =
+        json(&folder, &[&model("../examples/contact/crates.toml"), "--no-prove", "--tolerance", "1e-10"]);
+    let k = f64::tan(2.0 * f64::atan(0.15)) / 0.5;
+    let cosine = f64::cos(2.0 * f64::atan(0.15));
+    for (on, mass) in [("first", 6.0), ("second", 3.0), ("third", 1.0)] {
+        near([told::<18>(&run, &format!("{on}_seen"))[12]], [0.001 * k / (1.0 - k * k).sqrt()], 2e-7);
+        near([number(&run, &format!("{on}_normal"))], [mass * 9.81 * cosine], 1e-3);
     }
 }
 

@@ -58,10 +58,20 @@ fn surfaces(reader: &mut Reader<'_>, section: &Section<'_>, page: &Section<'_>, 
     }
     let mut numbers = Vec::new();
     section.require(reader, "stiffness");
+    if ["static_friction_coefficient", "stribeck_rate", "rate"].iter().any(|key| section.has(key)) {
+        section.require(reader, "friction_coefficient");
+    }
     for key in ["friction_coefficient", "static_friction_coefficient"].into_iter().chain(BETWEEN) {
         if section.has(key) {
             numbers.push((key, section.number(reader, key)));
         }
+    }
+    if let [("friction_coefficient", Number::Exact(kinetic)), (_, Number::Exact(at_rest)), ..] = &numbers[..]
+        && at_rest < kinetic
+        && let Some(item) = section.get("static_friction_coefficient")
+    {
+        let message = format!("the static coefficient of {} is below the kinetic one", section.title);
+        item.wrong(reader, [message, "is less".to_owned(), "write one that is not less".to_owned()]);
     }
     if let Some(item) = section.get("between")
         && item.tables(reader).len() == item.elements().count()

@@ -74,11 +74,12 @@ fn law(dice: &mut Dice) -> String {
         ("exponent", ["1", "1.5", "2"]),
         ("damping", ["0", "0.2", "1"]),
         ("friction_coefficient", ["0.1", "0.5", "1"]),
-        ("static_friction_coefficient", ["0.2", "0.6", "1.5"]),
+        ("static_friction_coefficient", ["1", "1.2", "1.5"]),
         ("stribeck_rate", ["0.01", "0.1", "1"]),
         ("rate", ["0.1", "0.5", "1"]),
     ] {
-        if dice.once_in(2) {
+        let is_of_friction = !matches!(key, "exponent" | "damping" | "friction_coefficient");
+        if dice.once_in(2) && (!is_of_friction || law.contains("friction")) {
             law += &format!("{key} = {}\n", dice.pick(&values));
         }
     }

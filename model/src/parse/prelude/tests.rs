@@ -1,5 +1,5 @@
 use super::{PRELUDE, names_of_parts};
-use crate::keys::{ELEMENT, Kind, ROLLING, Table};
+use crate::keys::{ELEMENT, Kind, ROLLING, SURFACES, Table};
 
 /// What stands in braces, up to the first dot or the equals sign.
 fn paths(text: &str) -> Vec<&str> {
@@ -45,8 +45,9 @@ fn the_prelude_has_no_parts_of_other_kinds() {
     for header in headers {
         let word = header.split('.').next().unwrap();
         let is_of = |table: &Table, kind: &Kind| names_of_parts(table, kind).iter().any(|name| name == word);
-        let is_known =
-            [&ELEMENT, &ROLLING].iter().any(|table| table.kinds.iter().any(|kind| is_of(table, kind)));
+        let is_known = [&ELEMENT, &ROLLING, &SURFACES]
+            .iter()
+            .any(|table| table.kinds.iter().any(|kind| is_of(table, kind)));
         assert!(is_known, "{word}");
     }
 }
