@@ -157,18 +157,23 @@ fn difference_in_c(model: &Path, name: &str, folder: &Path) -> (f64, usize) {
 #[ignore = "takes long: `.ci/steps` runs it"]
 fn laws_and_constraints_in_c_move_as_they_do_here() {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
-    let folders = ["laws", "rolling"].map(|folder| fs::read_dir(examples.join(folder)).unwrap());
+    let folders = ["contact", "laws", "rolling"].map(|folder| fs::read_dir(examples.join(folder)).unwrap());
     let mut models: Vec<_> = folders.into_iter().flatten().map(|entry| entry.unwrap().path()).collect();
     models.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    // So stiff that explicit steps take minutes.
+    models.retain(|path| path.file_stem().is_none_or(|name| name != "crates"));
     models.sort();
-    assert!(models.len() >= 13, "{models:?}");
+    assert!(models.len() >= 19, "{models:?}");
     for model in &models {
         let name = model.file_stem().unwrap().to_str().unwrap();
         let folder = env::temp_dir().join(format!("gyro-laws-in-c-{}-{name}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
         let (worst, count) = difference_in_c(model, name, &folder);
         println!("{name}: {worst:.1e} in {count} columns");
-        assert!(worst < 1e-9 && count > 0, "{name}: {worst} in {count} columns");
+        // Its steps do not end where bodies begin to touch: what error control leaves there counts.
+        let is_contact = model.parent().is_some_and(|folder| folder.ends_with("contact"));
+        let allowed = if is_contact { 1e-6 } else { 1e-9 };
+        assert!(worst < allowed && count > 0, "{name}: {worst} in {count} columns");
         fs::remove_dir_all(&folder).unwrap();
     }
 }

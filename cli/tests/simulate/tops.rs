@@ -21,7 +21,7 @@ fn a_tippe_top_turns_over() {
     };
     let ends = ["1e-6", "1.5", "3"].map(|t_end| {
         let folder = Folder::new("tippe-top");
-        let page = model("../examples/contact/tippe-top.toml");
+        let page = model("../examples/contact/tippe_top.toml");
         told::<18>(
             &json(&folder, &[&page, "--no-prove", "--t-end", t_end, "--tolerance", "1e-12"]),
             "foot_seen",
