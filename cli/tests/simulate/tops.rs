@@ -34,7 +34,7 @@ fn a_tippe_top_turns_over() {
     assert!(ends[0][11] > 0.99 && ends[2][11] < -0.5, "{ends:?}");
 }
 
-/// A rattleback with numbers like those of Kane and Levinson (1982): spun the wrong way it begins to rock, stops and
+/// A rattleback: spun the wrong way it begins to rock, stops and
 /// turns back. With u the vertical and r from the mass centre to where it touches, both by its own axes,
 /// `(I + m (r² − r rᵀ)) ω̇ = −ω × I ω + m r × (ṙ × ω + ω × (r × ω) + g u)` and `u̇ = u × ω`.
 #[test]

@@ -394,3 +394,18 @@ fn what_cannot_touch_is_refused() {
         refused(&simulate(&folder, &["page.toml"]), words);
     }
 }
+
+/// Of all shapes of two bodies those touch that can; what is left out is told.
+#[test]
+fn what_passes_through_is_told() {
+    let page = format!(
+        "{GROUND}[[body.shape]]\nbox = [0.1, 0.1, 0.1]\n[[body]]\nname = \"crate\"\nfree = true\nmass = 1\n\
+         inertia = [1, 1, 1]\nposition = [0, 0, 1]\n[[body.shape]]\nbox = [0.2, 0.2, 0.2]\n[[contact]]\nname = \"c\"\n\
+         stiffness = 1\nbetween = [{{ body = \"ground\" }}, {{ body = \"crate\" }}]\n"
+    );
+    let folder = Folder::new("touching-told");
+    fs::write(folder.0.join("page.toml"), &page).unwrap();
+    let output = simulate(&folder, &["page.toml", "--no-prove", "--t-end", "0.01"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.contains("how a box touches a box"), "{said}");
+}

@@ -269,7 +269,9 @@ pub static ROLLING: Table = Table::new(
         &[
             SURFACE,
             Key { value: super::Value::Table(&BUSHING_END), ..ON_IT },
-            vector("semi_axes", "m", "half of its length along x, y and z of its frame").required(),
+            vector("semi_axes", "m", "half of its length along x, y and z of its frame")
+                .positive("it would have no volume")
+                .required(),
             GRIP,
         ],
     ),

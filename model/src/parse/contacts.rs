@@ -82,8 +82,16 @@ fn surfaces(reader: &mut Reader<'_>, section: &Section<'_>, page: &Section<'_>, 
                 side.get("shape").and_then(|item| item.text(reader));
             }
         }
-        if let Err(words) = super::surfaces::pairs(page.table(), section.table()) {
-            item.wrong(reader, words);
+        match super::surfaces::pairs(page.table(), section.table()) {
+            Ok(pairs) => {
+                let words = |[one, other]: &[&str; 2]| {
+                    format!(
+                        "contact `{name}`: nothing is known of how a {one} touches a {other}: they pass through each other"
+                    )
+                };
+                reader.remarks.extend(pairs.pass.iter().map(words));
+            }
+            Err(words) => item.wrong(reader, words),
         }
     }
     Element { name, kind: "", table: CONTACT.name, numbers }

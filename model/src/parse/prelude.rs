@@ -28,7 +28,7 @@ pub(super) fn expanded<'t>(file: &Table<'t>) -> (Table<'t>, Vec<Range<usize>>) {
     let touching: Vec<(&keys::Table, Table<'t>)> = of(&CONTACT)
         .flat_map(|(_, contact)| {
             places.extend(contact.values().map(Spanned::span).filter(|_| contact.contains_key("between")));
-            surfaces::pairs(file, contact).unwrap_or_default()
+            surfaces::pairs(file, contact).unwrap_or_default().touch
         })
         .map(|pair| (&SURFACES, pair))
         .collect();

@@ -35,21 +35,34 @@ struct Surface<'a, 't> {
 /// The kinds of shape that can touch another.
 const KINDS: [&str; 8] = ["plane", "sphere", "capsule", "cylinder", "box", "ellipsoid", "torus", "vertices"];
 
-/// The pairs of a contact, as tables of the prelude's kinds.
-pub(super) fn pairs<'t>(file: &Table<'t>, contact: &Table<'t>) -> Result<Vec<Table<'t>>, Words> {
+/// What a contact comes to.
+#[derive(Default)]
+pub(super) struct Pairs<'t> {
+    /// Pairs of shapes, as tables of the prelude's kinds.
+    pub(super) touch: Vec<Table<'t>>,
+    /// Kinds of shape of which nothing is known, with those that they meet.
+    pub(super) pass: Vec<[&'static str; 2]>,
+}
+
+/// The pairs of a contact.
+pub(super) fn pairs<'t>(file: &Table<'t>, contact: &Table<'t>) -> Result<Pairs<'t>, Words> {
     let Some(name) = contact.get("name").filter(|name| name.get_ref().is_str()) else {
-        return Ok(Vec::new());
+        return Ok(Pairs::default());
     };
-    let Some([one, other]) = sides(file, contact)? else { return Ok(Vec::new()) };
-    let all = one.iter().flat_map(|one| other.iter().map(move |other| (*one, *other)));
-    let mut pairs: Vec<_> =
-        all.filter_map(|(one, other)| pair(one, other).or_else(|| pair(other, one))).collect();
+    let Some([one, other]) = sides(file, contact)? else { return Ok(Pairs::default()) };
+    let (mut pairs, mut pass) = (Vec::new(), Vec::new());
+    for (one, other) in one.iter().flat_map(|one| other.iter().map(move |other| (*one, *other))) {
+        match pair(one, other).or_else(|| pair(other, one)) {
+            Some(pair) => pairs.push(pair),
+            None => pass.push([one.kind, other.kind]),
+        }
+    }
     if pairs.is_empty() {
         let [one, other] = [one[0].kind, other[0].kind];
         return Err([
             format!("nothing is known of how a {one} touches a {other}"),
             "no such pair".to_owned(),
-            "a plane is touched by everything; a sphere, a capsule, a cylinder and a box by spheres; a capsule by \
+            "a plane is touched by everything else; a sphere, a capsule, a cylinder and a box by spheres; a capsule by \
              capsules"
                 .to_owned(),
         ]);
@@ -70,7 +83,7 @@ pub(super) fn pairs<'t>(file: &Table<'t>, contact: &Table<'t>) -> Result<Vec<Tab
             put(pair, "static_friction_coefficient", value.clone());
         }
     }
-    Ok(pairs)
+    Ok(Pairs { touch: pairs, pass })
 }
 
 /// The shapes of both sides; nothing where the tables themselves are wrong, which is told elsewhere.
@@ -130,7 +143,6 @@ fn sides<'a, 't>(
 
 /// How the second touches the first.
 fn pair<'t>(first: Surface<'_, 't>, second: Surface<'_, 't>) -> Option<Table<'t>> {
-    let size = |surface: &Surface<'_, 't>, k: usize| surface.size(k);
     let half = |surface: &Surface<'_, 't>, k: usize, sign: &str| {
         let size = surface.size(k)?;
         Some(Spanned::new(size.span(), DeValue::String(format!("{sign}({})/2", written(&size)?).into())))
@@ -156,12 +168,12 @@ fn pair<'t>(first: Surface<'_, 't>, second: Surface<'_, 't>) -> Option<Table<'t>
             ("points", rows.iter().cloned().collect())
         }
         ("plane", "torus") => {
-            put(&mut pair, "rim", size(&second, 1)?);
+            put(&mut pair, "rim", second.size(1)?);
             ("rims", vec![zero()])
         }
         ("plane", "ellipsoid") => {
             for (k, key) in ["semi_x", "semi_y", "semi_z"].into_iter().enumerate() {
-                put(&mut pair, key, size(&second, k)?);
+                put(&mut pair, key, second.size(k)?);
             }
             ("ellipsoid", vec![zero()])
         }
@@ -170,15 +182,13 @@ fn pair<'t>(first: Surface<'_, 't>, second: Surface<'_, 't>) -> Option<Table<'t>
             ("rims", vec![half(&second, 1, "")?, half(&second, 1, "-")?])
         }
         ("sphere" | "capsule" | "cylinder" | "box", "sphere") | ("capsule", "capsule") => {
-            for (k, key) in ["outer", "half_length"].into_iter().enumerate().filter(|_| first.kind != "box") {
-                if let Some(size) = if k == 1 { half(&first, 1, "") } else { size(&first, 0) } {
-                    put(&mut pair, key, size);
+            let halves = ["half_x", "half_y", "half_z"].into_iter().enumerate();
+            match first.kind {
+                "box" => halves.for_each(|(k, key)| put_some(&mut pair, key, half(&first, k, ""))),
+                _ => {
+                    put_some(&mut pair, "outer", first.size(0));
+                    put_some(&mut pair, "half_length", half(&first, 1, ""));
                 }
-            }
-            for (k, key) in
-                ["half_x", "half_y", "half_z"].into_iter().enumerate().filter(|_| first.kind == "box")
-            {
-                put(&mut pair, key, half(&first, k, "")?);
             }
             if second.kind == "capsule" {
                 put(&mut pair, "own_half_length", half(&second, 1, "")?);
@@ -196,7 +206,7 @@ fn pair<'t>(first: Surface<'_, 't>, second: Surface<'_, 't>) -> Option<Table<'t>
     };
     let radius = match second.kind {
         "box" | "vertices" => zero(),
-        _ => size(&second, 0)?,
+        _ => second.size(0)?,
     };
     put(&mut pair, "radius", radius);
     let count = DeValue::String(features.len().to_string().into());
@@ -250,6 +260,10 @@ fn array<'t>(elements: Vec<Value<'t>>) -> Value<'t> {
 
 fn put<'t>(table: &mut Table<'t>, key: &'static str, value: Value<'t>) {
     table.insert(Spanned::new(value.span(), key.into()), value);
+}
+
+fn put_some<'t>(table: &mut Table<'t>, key: &'static str, value: Option<Value<'t>>) {
+    value.into_iter().for_each(|value| put(table, key, value));
 }
 
 fn tables_under<'a, 't>(

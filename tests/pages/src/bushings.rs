@@ -23,11 +23,8 @@ const READINGS: [&str; 12] = [
 impl Page {
     /// One or two, in a third of the model files that have two bodies of which one moves.
     pub fn bushings(&mut self, seed: u64) {
-        let mut dice = Dice::new(seed.rotate_left(29));
-        if !dice.once_in(3) {
-            return;
-        }
-        for index in 0..1 + dice.below(2) {
+        let Some((mut dice, count)) = Dice::of_a_third(seed, 29) else { return };
+        for index in 0..count {
             let Some(ends) = self.two_frames(&mut dice) else { continue };
             let strengths = strengths(&mut dice);
             self.elements +=

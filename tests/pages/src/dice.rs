@@ -19,6 +19,16 @@ impl Dice {
         self.0.random_range(0..n)
     }
 
+    /// Dice of their own for what a third of the model files have, and how many of it: one or two.
+    pub fn of_a_third(seed: u64, turn: u32) -> Option<(Self, usize)> {
+        let mut dice = Self::new(seed.rotate_left(turn));
+        let is_there = dice.once_in(3);
+        is_there.then(|| {
+            let count = 1 + dice.below(2);
+            (dice, count)
+        })
+    }
+
     /// Once in so many times.
     pub fn once_in(&mut self, n: usize) -> bool {
         self.below(n) == 0

@@ -180,7 +180,7 @@ impl Page {
         match ways.below(8) {
             0 => format!("\"{sign}2*{name} / 2\""),
             1 => format!("\"{sign}{name}^3 / ({name} * {name})\""),
-            2 => format!("\"{sign}({name} + 0.5) {} 1/2\"", if sign == "-" { "+" } else { "-" }),
+            2 => format!("\"{sign}(3*{name} - 2*{name})\""),
             3 | 4 => {
                 let derived = format!("d{}", self.derived.len());
                 let text = ways.pick(&["\"NAME / 3\"", "\"1/3 * NAME\"", "\"NAME^2 / (3*NAME)\""]);

@@ -6,11 +6,8 @@ use crate::page::Page;
 impl Page {
     /// One or two, in a third of the model files that have two bodies of which one moves; of some a row.
     pub fn pairs(&mut self, seed: u64) {
-        let mut dice = Dice::new(seed.rotate_left(23));
-        if !dice.once_in(3) {
-            return;
-        }
-        for index in 0..1 + dice.below(2) {
+        let Some((mut dice, count)) = Dice::of_a_third(seed, 23) else { return };
+        for index in 0..count {
             let Some(ends) = self.two_frames(&mut dice) else { continue };
             self.elements += &format!("\n[[output]]\nname = \"p{index}\"\nkind = \"relative\"\n{ends}");
             let number = dice.pick(&["x", "yz", "vy", "wx", "wz"]);

@@ -26,11 +26,8 @@ const ALONG: [(&str, &str); 6] = [
 impl Page {
     /// One or two, in a third of the model files.
     pub fn ready(&mut self, seed: u64) {
-        let mut dice = Dice::new(seed.rotate_left(41));
-        if !dice.once_in(3) {
-            return;
-        }
-        for index in 0..1 + dice.below(2) {
+        let Some((mut dice, count)) = Dice::of_a_third(seed, 41) else { return };
+        for index in 0..count {
             let keys = match dice.below(3) {
                 0 => self.ready_along(&mut dice),
                 1 => self.ready_between(&mut dice),

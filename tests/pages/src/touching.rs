@@ -21,11 +21,8 @@ const PAIRS: [[&str; 2]; 11] = [
 impl Page {
     /// One or two contacts, in a third of the model files that have two bodies of which one moves.
     pub fn touching(&mut self, seed: u64) {
-        let mut dice = Dice::new(seed.rotate_left(37));
-        if !dice.once_in(3) {
-            return;
-        }
-        for index in 0..1 + dice.below(2) {
+        let Some((mut dice, count)) = Dice::of_a_third(seed, 37) else { return };
+        for index in 0..count {
             let bodies = [(); 2].map(|()| dice.below(self.bodies.len()));
             let [first, second] = bodies;
             if first == second || !bodies.iter().any(|body| self.bodies[*body].0.moves()) {
