@@ -6,7 +6,7 @@ use gyro_model::keys::FORCE;
 use gyro_model::{
     CoordinateKind, Force, JointCoordinate, JointKind, Model, Number, Output, OutputKind, Parameter,
 };
-use gyro_runner::{JointSample, Sample, Start, energy_error};
+use gyro_runner::{JointSample, Sample, Start, Touch, energy_error};
 use std::fmt::Write as _;
 
 /// A quantity that every sample has.
@@ -100,7 +100,8 @@ pub(crate) fn inputs_at(model: &Model, start: &Start, sample: &Sample) -> Vec<f6
     };
     let mut values: Vec<f64> = model.inputs.iter().enumerate().map(value).collect();
     let controlled = start.controllers.iter().flat_map(|controller| &controller.inputs);
-    let set = controlled.map(|(index, _)| *index).chain(start.contacts.iter().map(|contact| contact.input));
+    let set =
+        controlled.map(|(index, _)| *index).chain(start.contacts.iter().flat_map(Touch::inputs).copied());
     set.zip(&sample.controlled).for_each(|(index, value)| values[index] = *value);
     let of_paths = start.paths.iter().flat_map(|path| path.inputs_at(sample.t));
     of_paths.for_each(|(index, value)| values[index] = value);

@@ -3,15 +3,17 @@
 use crate::failure::Failure;
 use crate::remarks;
 use crate::words::{count, number};
-use gyro_model::{Contact, Model, RedundantRow, RowOwner, to_f64};
-use gyro_runner::Touch;
+use gyro_model::{Contact, Model, RedundantRow, RowOwner, Touching, to_f64};
+use gyro_runner::{Stop, Surfaces, Touch};
 use std::fmt::Write as _;
 
 /// The contacts of a model with its parameters as they are.
 pub(crate) fn contacts(model: &Model) -> Vec<Touch> {
+    let place =
+        |output: usize| model.outputs[..output].iter().map(|output| output.kind.columns().len()).sum();
     let one = |contact: &Contact| {
         let end = |k: usize, none: f64| contact.ends[k].as_ref().map_or(none, |end| model.value(end));
-        Touch {
+        Touch::Stop(Stop {
             on: (contact.on.joint, contact.on.coordinate),
             input: contact.input,
             ends: [end(0, f64::NEG_INFINITY), end(1, f64::INFINITY)],
@@ -21,12 +23,26 @@ pub(crate) fn contacts(model: &Model) -> Vec<Touch> {
             coefficients: in_order(contact.coefficients.each_ref().map(|coefficient| {
                 contact.radius.as_ref().map_or(1.0, |radius| model.value(radius)) * model.value(coefficient)
             })),
-            reaction: contact
-                .reaction
-                .map(|output| model.outputs[..output].iter().map(|output| output.kind.columns().len()).sum()),
-        }
+            reaction: contact.reaction.map(place),
+        })
     };
-    model.contacts.iter().map(one).collect()
+    let surfaces = |touching: &Touching| {
+        Touch::Surfaces(Surfaces {
+            inputs: touching.inputs,
+            outputs: touching.outputs.map(place),
+            // What the reader takes for one in spite of rounding.
+            restitution: to_f64(&model.exact(&touching.restitution)).min(1.0),
+            is_of_impulses: touching.is_of_impulses,
+            coefficients: in_order(touching.coefficients.each_ref().map(|number| model.value(number))),
+        })
+    };
+    model.contacts.iter().map(one).chain(model.touching.iter().map(surfaces)).collect()
+}
+
+/// The name of one of them.
+pub(crate) fn name(model: &Model, contact: usize) -> &str {
+    let names = model.contacts.iter().map(|contact| &contact.name);
+    names.chain(model.touching.iter().map(|one| &one.name)).nth(contact).map_or("", String::as_str)
 }
 
 /// A kinetic number, and a static one that is not below it.
@@ -34,29 +50,30 @@ fn in_order([kinetic, at_rest]: [f64; 2]) -> [f64; 2] {
     [kinetic, at_rest.max(kinetic)]
 }
 
-/// The contact whose force an input is.
-pub(crate) fn acting(model: &Model, input: usize) -> Option<&Contact> {
-    model.contacts.iter().find(|contact| contact.input == input)
+/// The contact of which an input is a force.
+pub(crate) fn acting(model: &Model, input: usize) -> Option<&str> {
+    let of = |contact: &Touch| contact.inputs().contains(&input);
+    contacts(model).iter().position(of).map(|contact| name(model, contact))
 }
 
 /// Says that what is made of a model has none of its contacts.
 pub(crate) fn say_left_out(model: &Model, what: &str) {
-    if !model.contacts.is_empty() {
+    if model.has_rigid_contacts() {
         remarks::warn(&format!(
             "{what} leaves out {} of the model file: the forces are inputs, the caller's to set",
-            count(model.contacts.len() as u64, "contact")
+            count(contacts(model).len() as u64, "contact")
         ));
     }
 }
 
 /// Refuses a model with contacts.
 pub(crate) fn refuse(model: &Model, what: &str) -> Result<(), Failure> {
-    match model.contacts.first() {
+    match Some(name(model, 0)).filter(|_| model.has_rigid_contacts()) {
         None => Ok(()),
         Some(first) => Err(Failure::Usage(format!(
             "{what} cannot have rigid stops or friction that sticks yet, and `{}` has the contact `{}`: write it as [[force]] \
              of kind \"stop\" or \"coulomb\", which are smooth",
-            model.name, first.name
+            model.name, first
         ))),
     }
 }
@@ -88,7 +105,7 @@ pub(crate) fn refuse_shared_reactions(model: &Model) -> Result<(), Failure> {
 pub(crate) fn text(model: &Model) -> String {
     let mut text = String::new();
     for contact in contacts(model).iter().zip(&model.contacts) {
-        let (touch, Contact { name, on, .. }) = contact;
+        let (Touch::Stop(touch), Contact { name, on, .. }) = contact else { continue };
         let _ = write!(text, "contact {name}: on joint {}", model.joints[on.joint].name);
         if touch.ends.iter().any(|end| end.is_finite()) {
             let [lower, upper] = touch.ends.map(|end| number(end, 6));
@@ -104,6 +121,16 @@ pub(crate) fn text(model: &Model) -> String {
             let _ = write!(text, ", coefficients of friction {kinetic}, static {at_rest}");
         }
         text.push('\n');
+    }
+    for one in &model.touching {
+        let law = if one.is_of_impulses { " of impulses" } else { "" };
+        let share = number(model.value(&one.restitution), 6);
+        let [kinetic, at_rest] = one.coefficients.each_ref().map(|of| number(model.value(of), 6));
+        let _ = writeln!(
+            text,
+            "contact {}: rigid, restitution {share}{law}, coefficients of friction {kinetic}, static {at_rest}",
+            one.name
+        );
     }
     text
 }

@@ -1,6 +1,7 @@
 //! Events of a run: what is looked for, and the list of what was found.
 
 use crate::args::EventSetting;
+use crate::contacts;
 use crate::failure::Failure;
 use crate::formulas::formula;
 use crate::words::{count, number, table};
@@ -65,7 +66,7 @@ struct Told<'m> {
 }
 
 fn told<'m>(model: &'m Model, occurrence: &Occurrence) -> Told<'m> {
-    let of_contact = |contact: usize, what| Told { name: &model.contacts[contact].name, what, rates: None };
+    let of_contact = |contact: usize, what| Told { name: contacts::name(model, contact), what, rates: None };
     match occurrence.what {
         What::Crossed { event, rises } => {
             let what = if rises { "rises" } else { "falls" };

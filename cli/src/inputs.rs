@@ -22,7 +22,7 @@ pub(crate) fn inputs(model: &Model, given: &[(String, InputSetting)]) -> Result<
             return Err(Failure::Usage(words));
         }
         if let Some(contact) = contacts::acting(model, index) {
-            let words = format!("--input {name}: this is the force of the contact `{}`", contact.name);
+            let words = format!("--input {name}: this is the force of the contact `{contact}`");
             return Err(Failure::Usage(words));
         }
         if let Some(owner) = paths::moving(model, index) {

@@ -61,7 +61,7 @@ impl Scene {
         let start_controllers = controllers::controllers(&model);
         let offers = Offers {
             inputs_vary: any_varies(&inputs) || !start_controllers.is_empty(),
-            touches: !model.contacts.is_empty(),
+            touches: model.has_rigid_contacts(),
             period: start_controllers.iter().map(Controller::period_s).reduce(f64::min),
             ..offers(&model, args)
         };

@@ -258,7 +258,7 @@ fn job(loaded: &Loaded) -> Job {
     // Samples that nothing is kept of take as long as the rest of a run. Under error control none changes a step.
     let is_read_at_its_end = study.keep.reads_the_end_alone()
         && scene.approach.tolerance.is_some()
-        && scene.page.contacts.is_empty()
+        && !scene.page.has_rigid_contacts()
         && scene.page.lines().is_empty()
         && Way::of(loaded) == Way::Whole;
     let sample_every = if is_read_at_its_end { scene.settings.t_end } else { scene.settings.sample_every };

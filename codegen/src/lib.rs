@@ -293,7 +293,8 @@ fn facts(system: &System) -> Facts {
         | OutputKind::Inertial(_)
         | OutputKind::Reaction { .. }
         | OutputKind::Driver { .. }
-        | OutputKind::Coupler { .. } => true,
+        | OutputKind::Coupler { .. }
+        | OutputKind::Rate(_) => true,
         OutputKind::Power => is_driven,
         OutputKind::Pose(_)
         | OutputKind::Velocity(_)

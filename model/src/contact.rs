@@ -27,6 +27,26 @@ pub struct Contact {
     pub input: usize,
 }
 
+/// Surfaces of two bodies that may touch at a point, rigid: what each of the pairs of shapes of a
+/// `[[contact]]` comes to. By a bushing they push along the normal of the surfaces and rub along two tangents, with
+/// forces that are inputs.
+#[derive(Clone, Debug)]
+pub struct Touching {
+    /// Name of the pair and number of the point.
+    pub name: String,
+    /// What is left of the rate, or of the impulse, after an impact: from 0 to 1.
+    pub restitution: Number,
+    /// Whether restitution is of impulses, Poisson's law, rather than of rates, Newton's.
+    pub is_of_impulses: bool,
+    /// The kinetic and the static coefficient of friction.
+    pub coefficients: [Number; 2],
+    /// Indices into [`crate::Model::inputs`] of the push, and of friction along both tangents, N.
+    pub inputs: [usize; 3],
+    /// Indices into [`crate::Model::outputs`], each of one number: the gap, its rate and its acceleration; the velocity
+    /// of slip along the first tangent and its derivative; and those along the second.
+    pub outputs: [usize; 7],
+}
+
 impl Contact {
     /// Most contacts of a model.
     pub const MOST: usize = 8;

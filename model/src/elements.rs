@@ -356,6 +356,8 @@ pub enum OutputKind {
     },
     /// The value of a formula.
     Formula(Formula),
+    /// The time derivative of a formula along the motion, while inputs stay as they are.
+    Rate(Formula),
     /// A state of one's own.
     State {
         /// Index into [`crate::Model::states`].
@@ -379,9 +381,9 @@ impl OutputKind {
         }
     }
 
-    /// The formula, of those that are one.
+    /// The formula, of those that have one.
     pub fn formula(&self) -> Option<&Formula> {
-        if let Self::Formula(formula) = self { Some(formula) } else { None }
+        if let Self::Formula(formula) | Self::Rate(formula) = self { Some(formula) } else { None }
     }
 
     /// The frames, to be changed.
@@ -451,7 +453,7 @@ impl OutputKind {
                 ("torque_y", "N*m"),
                 ("torque_z", "N*m"),
             ],
-            Self::Formula(_) | Self::State { .. } => &[("", "1")],
+            Self::Formula(_) | Self::Rate(_) | Self::State { .. } => &[("", "1")],
             Self::Energy => &[("kinetic", "J"), ("potential", "J")],
             Self::Power => &[("non_conservative", "W"), ("drivers", "W")],
         }

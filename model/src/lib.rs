@@ -42,7 +42,7 @@ mod validate;
 
 pub use assemble::{AssemblyError, JointStart, Move, START_TOLERANCE, Start, StartTolerances};
 pub use attraction::Attraction;
-pub use contact::Contact;
+pub use contact::{Contact, Touching};
 pub use controller::{Controller, Law};
 pub use coordinate::{CoordinateKind, CoordinateUse, JointCoordinate, Seen};
 pub use coupler::{Coupler, Coupling};
@@ -112,6 +112,8 @@ pub struct Model {
     pub events: Vec<Event>,
     /// Rigid stops and friction that sticks: generated code has their forces, as inputs; runs do the rest.
     pub contacts: Vec<Contact>,
+    /// Where rigid surfaces of bodies may touch.
+    pub touching: Vec<Touching>,
     /// Constraint rows that depend on others and were dropped, or stay: found by rank when the model file was read.
     pub redundant: Vec<RedundantRow>,
     /// Whether the state carries the work of what is not conservative, where there is such: see [`Model::has_work`].

@@ -57,6 +57,9 @@ impl Model {
             numbers.extend(event.of.numbers());
         }
         self.contacts.iter().for_each(|contact| numbers.extend(contact.numbers()));
+        for one in &self.touching {
+            numbers.extend(one.coefficients.iter().chain([&one.restitution]));
+        }
         numbers
     }
 }

@@ -16,6 +16,11 @@ impl Support {
 }
 
 impl Model {
+    /// Whether anything is hit, sticks or slides: contacts that are rigid.
+    pub fn has_rigid_contacts(&self) -> bool {
+        !self.contacts.is_empty() || !self.touching.is_empty()
+    }
+
     /// The curves that equations and outputs call, by their places, each once.
     pub fn curves_of_equations(&self) -> Vec<usize> {
         let of_forces = self.forces.iter().flat_map(|force| force.kind.parts().numbers);

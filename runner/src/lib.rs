@@ -57,7 +57,7 @@ pub use schedule::{Impossible, Schedule, Segment, Settings};
 pub use spectrum::fastest_rate;
 pub use summary::{Summary, Tracker, energy_error};
 pub use timing::{Timing, time_by};
-pub use touch::Touch;
+pub use touch::{Stop, Surfaces, Touch};
 pub use watch::{Occurrence, Watch, What};
 
 /// Where this crate's manifest was when it was compiled: the command line packs its sources.

@@ -444,6 +444,10 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/observed.rs", "tool", "by_parameters: «by(Symbol::Parameter, model.parameters.len())»,", "by(Symbol::Input, model.parameters.len())"),
     fault("joint_space/motions.rs", "tool", "Part::Linear => («Bias::NONE», SpatialVector::ZERO),", "dynamics::bias(system, link_kinematics, &spins)"),
     fault("derive/outputs.rs", "pendulum", "let centripetal = «graph.cross(&pose.w, &speed)»;", "graph.cross(&speed, &pose.w)"),
+    fault("derive/outputs.rs", "ball", "let mut direction = «in_time(&mut system.graph, system.model)»;", "std::collections::BTreeMap::new()"),
+    fault("derive/outputs.rs", "ball", "direction.extend(«system.direction(&motion)»);", "std::collections::BTreeMap::<Symbol, ExprId>::new()"),
+    fault("derive/outputs.rs", "ball", "(Symbol::Velocity { moving_body, k }, «linear»);", "Graph::ZERO"),
+    fault("derive/outputs.rs", "ball", "(Symbol::Spin { moving_body, k }, «angular»);", "Graph::ZERO"),
     fault("derive/outputs.rs", "pendulum", "let felt = «system.graph.sub_vec(&linear, &gravity)»;", "linear"),
     fault("derive/outputs.rs", "pendulum", "«graph.mat_vec(&system.poses[body].a, &taken.torque)»", "taken.torque"),
 ];

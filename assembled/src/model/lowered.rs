@@ -3,13 +3,13 @@
 use crate::model::amount::Amount;
 use crate::model::forces::Element;
 use crate::model::joint::Joint;
-use crate::model::outputs::Output;
+use crate::model::outputs::{Output, Quantity};
 use crate::model::place::{Places, first_state};
 use crate::model::rotor::Rotor;
 use crate::model::rows::Row;
 use crate::model::scene::Scene;
 use crate::number::{Number, number};
-use gyro_model::{AssemblyError, Coupler, JointCoordinate, Model, RowOwner, RowUnit};
+use gyro_model::{AssemblyError, Coupler, JointCoordinate, Model, OutputKind, RowOwner, RowUnit, Seen};
 use gyro_sim::{Owner, RowInfo};
 
 /// A model in numbers. It holds no state but the values of the inputs.
@@ -44,7 +44,7 @@ impl<T: Number> Lowered<T> {
         let turns = model.turn_references();
         let first_turn = first_state(model) + model.states.len();
         let reference = |of| turns.iter().position(|&turn| turn == of).map(|index| first_turn + index);
-        let pairs = pairs_of_rows(model);
+        let pairs = pairs(model);
         let scene = Scene::new(model, &places, reference, &pairs);
         let rows = model.rows();
         Ok(Self {
@@ -58,7 +58,7 @@ impl<T: Number> Lowered<T> {
             outputs: model
                 .outputs
                 .iter()
-                .map(|output| Output::new(model, (&places, &scene.joints), output))
+                .map(|output| Output::new(model, (&places, &scene.joints, &pairs), output))
                 .collect(),
             states: model
                 .states
@@ -82,6 +82,11 @@ impl<T: Number> Lowered<T> {
                 course.set_input(index, value.to_f64());
             }
         }
+        for output in &mut self.outputs {
+            if let Quantity::Rate(formula) = &mut output.quantity {
+                formula.set_input(index, value);
+            }
+        }
         self.scene.driven.iter_mut().for_each(|body| body.set_input(index, value.to_f64()));
         self.scene.inputs.get_mut(index).map(|(_, present)| *present = value).is_some()
     }
@@ -92,9 +97,14 @@ impl<T: Number> Lowered<T> {
     }
 }
 
-/// The outputs of two frames that rows see, by their indices.
-fn pairs_of_rows(model: &Model) -> Vec<usize> {
+/// The outputs of two frames that rows, or rates of formulas, see, by their indices.
+fn pairs(model: &Model) -> Vec<usize> {
     let mut pairs: Vec<_> = model.couplers.iter().flat_map(Coupler::outputs).collect();
+    for output in &model.outputs {
+        let OutputKind::Rate(formula) = &output.kind else { continue };
+        let of_output = |seen| if let Seen::Output { output, .. } = seen { Some(output) } else { None };
+        pairs.extend(formula.sees().filter_map(of_output));
+    }
     pairs.sort_unstable();
     pairs.dedup();
     pairs

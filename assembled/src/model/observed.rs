@@ -2,6 +2,7 @@
 
 use crate::model::amount::{Amount, Now};
 use crate::model::lowered::Lowered;
+use crate::model::measure::Term;
 use crate::model::motion::{Motion, along_pi};
 use crate::model::outputs::{Quantity, Solution};
 use crate::model::place::{Moment, Place};
@@ -76,6 +77,15 @@ impl<T: Number> Lowered<T> {
             Quantity::Load(row) => out[0] = row.map_or(T::zero(), |row| -solution.lambda[row]),
             Quantity::State(place) => out[0] = at.y[*place],
             Quantity::Formula(_) => out[0] = T::zero(),
+            Quantity::Rate(formula) => {
+                let jet = |term: &Term<T>| {
+                    let joint = self.scene.joint(term.joint);
+                    let motions = [&joint.first.place, &joint.second.place]
+                        .map(|place| self.accelerated(at, place, solution.accelerations));
+                    term.measure.jet(joint, &motions, at.y)
+                };
+                out[0] = formula.jet(&formula.terms.iter().map(jet).collect::<Vec<_>>(), at.t)[1];
+            }
             Quantity::Energy => {
                 let energy = self.energy(at);
                 (out[0], out[1]) = (energy.kinetic, energy.potential);

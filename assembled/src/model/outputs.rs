@@ -8,6 +8,7 @@ use crate::model::measure::Coordinate;
 use crate::model::path::Path;
 use crate::model::place::{Places, first_state, vector};
 use crate::model::spot::Spot;
+use crate::model::tracked::{Subject, Tracked};
 use crate::number::Number;
 use gyro_model::{BodyFrame, ForceKind, Model, OutputKind, RowOwner};
 
@@ -38,6 +39,8 @@ pub(crate) enum Quantity<T> {
     Bushing(Box<Bushing<T>>),
     /// A formula, which may see other outputs.
     Formula(Amount<T>),
+    /// The derivative of a formula of what joints measure and of where frames are.
+    Rate(Box<Tracked<T>>),
     Energy,
     Power,
 }
@@ -95,7 +98,7 @@ impl<T: Number> Elastic<T> {
 impl<T: Number> Output<T> {
     pub(crate) fn new(
         model: &Model,
-        (places, joints): (&Places<T>, &[Joint<T>]),
+        (places, joints, pairs): (&Places<T>, &[Joint<T>], &[usize]),
         output: &gyro_model::Output,
     ) -> Self {
         let spot = |frame: &BodyFrame| Spot::new(model, places, frame);
@@ -131,6 +134,10 @@ impl<T: Number> Output<T> {
             OutputKind::Formula(formula) => {
                 let number = gyro_model::Number::Formula(formula.clone().into());
                 Quantity::Formula(Amount::new(model, (places, joints), &number))
+            }
+            OutputKind::Rate(formula) => {
+                let term = |subject: Subject| subject.term((joints, pairs));
+                Quantity::Rate(Box::new(Tracked::new(model, formula, term)))
             }
             OutputKind::Energy => Quantity::Energy,
             OutputKind::Power => Quantity::Power,

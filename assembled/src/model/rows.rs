@@ -3,7 +3,7 @@
 use crate::model::course::Course;
 use crate::model::joint::Joint;
 use crate::model::kinds::{Axis, Primitive, primitives};
-use crate::model::measure::{Coordinate, Measure, Term};
+use crate::model::measure::{Measure, Term};
 use crate::model::tracked::{Subject, Tracked};
 use crate::number::{Number, number};
 use gyro_model::{Coupling, JointCoordinate, JointKind, Model, RowOwner};
@@ -30,17 +30,9 @@ impl<T: Number> Row<T> {
     ) -> Self {
         let coordinate = |factor: f64, of: JointCoordinate| Term {
             factor: number(factor),
-            joint: of.joint,
-            measure: Coordinate::of(&joints[of.joint], of.coordinate).measure,
+            ..Subject::Coordinate(of).term((joints, pairs))
         };
-        let subject = |subject: Subject| match subject {
-            Subject::Coordinate(of) => coordinate(1.0, of),
-            Subject::Place(output, number) => {
-                let pair =
-                    pairs.iter().position(|pair| *pair == output).expect("all that rows see are there");
-                Term { factor: T::one(), joint: joints.len() + pair, measure: Measure::of_place(number) }
-            }
-        };
+        let subject = |subject: Subject| subject.term((joints, pairs));
         match row.owner {
             RowOwner::Body(body) => {
                 let before = moving_bodies.iter().take_while(|&&b| b != body);

@@ -21,7 +21,7 @@ pub struct Scene<T: Number> {
     /// Bodies whose whole motion is prescribed.
     pub(crate) driven: Vec<DrivenBody>,
     pub(crate) joints: Vec<Joint<T>>,
-    /// The frames that rows see besides those of joints.
+    /// The frames that rows, and rates of formulas, see besides those of joints.
     pairs: Vec<Joint<T>>,
     /// Names and values.
     pub(crate) inputs: Vec<(String, T)>,

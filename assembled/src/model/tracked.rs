@@ -2,9 +2,10 @@
 
 use crate::model::curves::Curves;
 use crate::model::jets::{Jet, jet};
-use crate::model::measure::Term;
+use crate::model::joint::Joint;
+use crate::model::measure::{Coordinate, Measure, Term};
 use crate::number::{Number, number};
-use gyro_model::{Formula, JointCoordinate, Model, Operation, Relative, Seen};
+use gyro_model::{Formula, JointCoordinate, Model, Number as PageNumber, Operation, Relative, Seen};
 
 /// A formula of joint coordinates and of where frames are.
 #[derive(Clone, Debug)]
@@ -27,6 +28,18 @@ pub(crate) enum Subject {
 }
 
 impl Subject {
+    /// What is measured.
+    pub(crate) fn term<T: Number>(self, (joints, pairs): (&[Joint<T>], &[usize])) -> Term<T> {
+        let (joint, measure) = match self {
+            Self::Coordinate(of) => (of.joint, Coordinate::of(&joints[of.joint], of.coordinate).measure),
+            Self::Place(output, number) => {
+                let pair = pairs.iter().position(|pair| *pair == output);
+                (joints.len() + pair.expect("all that is seen is there"), Measure::of_place(number))
+            }
+        };
+        Term { factor: T::one(), joint, measure }
+    }
+
     /// What is needed to tell a number.
     fn of(seen: Seen) -> Vec<Self> {
         match seen {
@@ -76,6 +89,18 @@ impl<T: Number> Tracked<T> {
     /// A formula of time alone.
     pub(crate) fn of_time(model: &Model, formula: &Formula) -> Self {
         Self::new(model, formula, |_| unreachable!("the reader allows no coordinates in motions"))
+    }
+
+    /// An input has changed.
+    pub(crate) fn set_input(&mut self, input: usize, value: T) {
+        for (number, operation) in self.numbers.iter_mut().zip(&self.formula.operations) {
+            match operation {
+                Operation::Number(PageNumber::Input { index, negated }) if *index == input => {
+                    *number = if *negated { -value } else { value };
+                }
+                _ => {}
+            }
+        }
     }
 
     /// The value with its derivatives, from those of the subjects in their order and the time.

@@ -64,7 +64,7 @@ impl Lab {
         }
         // From event to event there are runs of one kind alone.
         let touching =
-            (!model.contacts.is_empty()).then(|| Runs::with(Coordinates::Joint, Correction::None).touching());
+            (model.has_rigid_contacts()).then(|| Runs::with(Coordinates::Joint, Correction::None).touching());
         let program = |precision| nested::program(&model, &module, precision, touching);
         let programs = [program(Precision::F64)?, program(Precision::F32)?];
         let lab = Self::with_programs(model, path, name, programs, assembled)?;

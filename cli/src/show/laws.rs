@@ -58,6 +58,7 @@ pub(super) fn of_link(model: &Model, link: usize) -> Option<Amount> {
 
 /// The output that tells a formula.
 fn telling<'m>(model: &'m Model, formula: &Formula) -> Option<&'m Output> {
-    let tells = |output: &&Output| output.kind.formula().is_some_and(|known| known.text == formula.text);
+    let tells =
+        |output: &&Output| matches!(&output.kind, OutputKind::Formula(known) if known.text == formula.text);
     model.outputs.iter().find(tells)
 }

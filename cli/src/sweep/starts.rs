@@ -112,7 +112,7 @@ pub(super) fn are_alike(study: &Study, scene: &Scene) -> bool {
     let is_constant = study.plan.targets.iter().all(|target| !matches!(target, Target::Table(_)));
     approach.coordinates == Coordinates::Joint
         && model.controllers.is_empty()
-        && model.contacts.is_empty()
+        && !model.has_rigid_contacts()
         && model.lines().is_empty()
         && gyro_codegen::lacks_joint_coordinates(model).is_none()
         && is_explicit

@@ -13,6 +13,9 @@ fn setters(model: &Model) -> Vec<Setter> {
     let controllers = controllers.map(|one| setter(SetterKind::Controller, &one.name, one.inputs.clone()));
     let contacts = model.contacts.iter();
     let contacts = contacts.map(|one| setter(SetterKind::Contact, &one.name, vec![one.input]));
+    let surfaces = model.touching.iter();
+    let surfaces = surfaces.map(|one| setter(SetterKind::Contact, &one.name, one.inputs.to_vec()));
+    let contacts = contacts.chain(surfaces);
     let lines = model.lines().into_iter();
     let lines = lines.map(|(name, lines)| setter(SetterKind::Lines, name, lines.inputs.to_vec()));
     let followed = model.followed_inputs().into_iter();

@@ -171,22 +171,29 @@ pub fn with_slope(
     readings: &impl Readings,
     by: Seen,
 ) -> (ExprId, ExprId) {
+    let slope = |_: &mut System, seen: Seen, _: ExprId| if seen == by { Graph::ONE } else { Graph::ZERO };
+    with_derivative(system, formula, readings, slope)
+}
+
+/// The value of a formula and its derivative along what each number that it sees changes by, given the number.
+pub fn with_derivative(
+    system: &mut System,
+    formula: &Formula,
+    readings: &impl Readings,
+    mut change: impl FnMut(&mut System, Seen, ExprId) -> ExprId,
+) -> (ExprId, ExprId) {
     let pair = formula.value(|operation, values: &[(ExprId, ExprId)]| {
         let value_of = |place: usize| values[place].0;
         let slope_of = |place: usize| values[place].1;
         let value =
             one(system, operation, value_of, |system, seen| see(system, readings, Own::Nothing, seen));
+        if let Operation::Seen(seen) = operation {
+            return Ok((value, change(system, *seen, value)));
+        }
         let called = if let Operation::Call(of, _) = operation { Some(called(system, *of)) } else { None };
         let graph = &mut system.graph;
         let slope = match operation {
-            Operation::Number(_) => Graph::ZERO,
-            Operation::Seen(seen) => {
-                if *seen == by {
-                    Graph::ONE
-                } else {
-                    Graph::ZERO
-                }
-            }
+            Operation::Number(_) | Operation::Seen(_) => Graph::ZERO,
             Operation::Negative(a) => graph.neg(slope_of(*a)),
             Operation::Sum(a, b) => graph.add(slope_of(*a), slope_of(*b)),
             Operation::Difference(a, b) => graph.sub(slope_of(*a), slope_of(*b)),

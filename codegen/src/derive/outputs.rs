@@ -78,6 +78,7 @@ fn numbers(system: &mut System, sources: &Sources, kind: &OutputKind) -> Vec<Exp
         OutputKind::State { state } => vec![system.graph.symbol(Symbol::State(*state))],
         OutputKind::Bushing { force } => bushings::told(system, *force),
         OutputKind::Formula(formula) => vec![formula_value(system, sources, formula)],
+        OutputKind::Rate(formula) => vec![formula_rate(system, formula)],
         OutputKind::Energy => vec![sources.dynamics.kinetic, sources.dynamics.potential],
         OutputKind::Power => vec![sources.dynamics.power, drivers_power(system, sources)],
     }
@@ -92,6 +93,25 @@ fn formula_value(system: &mut System, sources: &Sources, formula: &Formula) -> E
         }
         seen => laws::see(system, &OfBodies, Own::Nothing, seen),
     })
+}
+
+/// The time derivative of a formula of positions and velocities: those change as these and the accelerations say.
+fn formula_rate(system: &mut System, formula: &Formula) -> ExprId {
+    let motion = system.velocities();
+    let mut direction = in_time(&mut system.graph, system.model);
+    direction.extend(system.direction(&motion));
+    for moving_body in 0..motion.len() {
+        for k in 0..3 {
+            let [linear, angular] =
+                [k, 3 + k].map(|k| system.graph.symbol(Symbol::Acceleration { moving_body, k }));
+            direction.insert(Symbol::Velocity { moving_body, k }, linear);
+            direction.insert(Symbol::Spin { moving_body, k }, angular);
+        }
+    }
+    let change = |system: &mut System, _, number| {
+        Derivative::new(&system.definitions, direction.clone()).of(&mut system.graph, number)
+    };
+    laws::with_derivative(system, formula, &OfBodies, change).1
 }
 
 /// Acceleration of a point, global frame, `r̈ = s̈ + A (ẇ' × c + w' × (w' × c))`, and ẇ'.

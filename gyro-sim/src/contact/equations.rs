@@ -1,8 +1,8 @@
 //! Equations of motion with contacts in their phases.
 
 use super::loads::{Acting, Growth, Jam, Loads, size};
-use super::small::{at, set, solve};
-use super::{Contact, Phase};
+use super::small::{at, set, solve, spread};
+use super::{Contact, Phase, Role};
 use crate::{Clearance, Correction, Error, Ode, Real};
 use core::array::from_fn;
 use core::cell::Cell;
@@ -53,6 +53,20 @@ pub trait Forced<M = ()>: Ode<M> {
         _out: &mut [[Self::Scalar; 3]],
     ) {
     }
+    /// Whether there may be contacts between surfaces.
+    const HAS_SURFACES: bool = false;
+    /// Writes value, rate and acceleration of contacts between surfaces ([`Contact::surfaces`]) under these forces: a
+    /// gap, m, and the velocities of slip, m/s, whose values are zero. What forces do is dual to that: the power of a
+    /// force is its product with the rate.
+    fn seen(
+        &self,
+        _model: &M,
+        _t: Self::Scalar,
+        _y: &Self::State,
+        _forces: &[Self::Scalar],
+        _out: &mut [[Self::Scalar; 3]],
+    ) {
+    }
 }
 
 /// Equations with contacts.
@@ -63,12 +77,27 @@ pub struct Contacts<D, T, const N: usize> {
     pub(super) phases: [Phase; N],
     /// The largest accelerations that were compared so far: a force that has come to its bound is no scale itself.
     pub(super) largest: T,
+    /// Of surfaces that slide: the components of the direction in which they did, or begin to.
+    pub(super) ways: [T; N],
+    /// Where they are not faster than this, their direction is for the most part that in which they did.
+    pub(super) vague: [T; N],
+    /// How forces of surfaces that touch at several points were divided among these when phases were chosen: where
+    /// accelerations leave that open, it stays so.
+    pub(super) split: [T; N],
+    /// By how much friction of surfaces that stick may be beyond its bound: more where it is at its bound while nothing
+    /// slips, as between bodies that slide down together.
+    pub(super) slack: [T; N],
+    /// Slower than this nothing slips, m/s; and smaller than that no force counts, N.
+    pub(super) slowest: T,
+    pub(super) weakest: T,
     /// Friction that may jam where the equations were evaluated.
     pub(super) jam: Cell<Option<Jam>>,
 }
 
 /// Accelerations of the contacts' coordinates: without forces of contacts, and what unit forces add, row by row.
 pub(super) struct Local<T, const N: usize> {
+    /// The contacts' rates.
+    pub(super) rates: [T; N],
     pub(super) bias: [T; N],
     pub(super) compliance: [[T; N]; N],
 }
@@ -79,8 +108,83 @@ pub(super) const LARGE: f64 = 1_099_511_627_776.0;
 
 impl<D, T: Real, const N: usize> Contacts<D, T, N> {
     pub(super) fn new(dynamics: D, contacts: [Contact<T>; N]) -> Self {
-        let phases = [Phase::Free; N];
-        Self { dynamics, contacts, phases, largest: T::constant(0.0), jam: Cell::new(None) }
+        let (phases, zero) = ([Phase::Free; N], T::constant(0.0));
+        let [ways, vague, split, slack] = [[zero; N]; 4];
+        let [largest, slowest, weakest] = [zero; 3];
+        Self {
+            dynamics,
+            contacts,
+            phases,
+            largest,
+            ways,
+            vague,
+            split,
+            slack,
+            slowest,
+            weakest,
+            jam: Cell::new(None),
+        }
+    }
+
+    /// Whether any of the contacts are between surfaces.
+    pub(super) fn has_surfaces<M>(&self) -> bool
+    where
+        D: Forced<M, Scalar = T>,
+    {
+        D::HAS_SURFACES && self.contacts.iter().any(|contact| contact.role == Role::Gap)
+    }
+
+    /// Value and rate of each contact.
+    pub(super) fn places<M>(&self, model: &M, (t, y): (T, &D::State)) -> [[T; 2]; N]
+    where
+        D: Forced<M, Scalar = T>,
+    {
+        let seen = self.seen(model, (t, y), &[T::constant(0.0); N]);
+        from_fn(|k| self.place(k, y.as_ref(), &seen))
+    }
+
+    fn place(&self, k: usize, y: &[T], seen: &[[T; 3]; N]) -> [T; 2] {
+        let contact = &self.contacts[k];
+        match contact.role {
+            Role::Coordinate => [at(y, contact.coordinate), at(y, contact.rate)],
+            Role::Gap | Role::Slip { .. } => [seen[k][0], seen[k][1]],
+        }
+    }
+
+    fn seen<M>(&self, model: &M, (t, y): (T, &D::State), forces: &[T; N]) -> [[T; 3]; N]
+    where
+        D: Forced<M, Scalar = T>,
+    {
+        let mut seen = [[T::constant(0.0); 3]; N];
+        if self.has_surfaces::<M>() {
+            self.dynamics.seen(model, t, y, forces, &mut seen);
+        }
+        seen
+    }
+
+    /// The contacts' rates and accelerations under these forces.
+    fn moving<M>(
+        &self,
+        model: &M,
+        (t, y): (T, &D::State),
+        forces: &[T; N],
+        scratch: &mut D::State,
+    ) -> [[T; 2]; N]
+    where
+        D: Forced<M, Scalar = T>,
+    {
+        let seen = self.seen(model, (t, y), forces);
+        let is_coordinate = |contact: &Contact<T>| contact.role == Role::Coordinate && contact.acts();
+        if !self.has_surfaces::<M>() || self.contacts.iter().any(is_coordinate) {
+            self.dynamics.accelerations(model, t, y, forces, scratch);
+        }
+        from_fn(|k| {
+            let (contact, [_, rate]) = (&self.contacts[k], self.place(k, y.as_ref(), &seen));
+            match contact.role {
+                Role::Coordinate => [rate, at(scratch.as_ref(), contact.rate)],
+                Role::Gap | Role::Slip { .. } => [rate, seen[k][2]],
+            }
+        })
     }
 
     /// The forces of friction on what moves.
@@ -105,19 +209,18 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
     {
         let zero = T::constant(0.0);
         let mut forces = [zero; N];
-        self.dynamics.accelerations(model, t, y, &forces, scratch);
-        let rates = self.contacts.map(|contact| contact.rate);
-        let bias = rates.map(|rate| at(scratch.as_ref(), rate));
+        let moving = self.moving(model, (t, y), &forces, scratch);
+        let [rates, bias] = [0, 1].map(|which| moving.map(|moving| moving[which]));
         let mut compliance = [[zero; N]; N];
         for k in (0..N).filter(|k| chosen[*k]) {
             forces[k] = T::constant(LARGE);
-            self.dynamics.accelerations(model, t, y, &forces, scratch);
+            let pushed = self.moving(model, (t, y), &forces, scratch);
             forces[k] = zero;
-            for (i, rate) in rates.into_iter().enumerate() {
-                compliance[i][k] = (at(scratch.as_ref(), rate) - bias[i]) / T::constant(LARGE);
+            for i in 0..N {
+                compliance[i][k] = (pushed[i][1] - bias[i]) / T::constant(LARGE);
             }
         }
-        Local { bias, compliance }
+        Local { rates, bias, compliance }
     }
 
     /// How reactions follow forces; `None` where no friction depends on them.
@@ -153,8 +256,20 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
     /// friction on what moves has its level under the reactions that all forces make.
     pub(super) fn acting(&self, local: &Local<T, N>, loads: Option<&Loads<T, N>>) -> Acting<T, N> {
         let held = self.phases.map(Phase::is_held);
-        let forces = local.balance(&held, &self.kinetic_forces());
-        let levels = self.contacts.map(|contact| contact.levels[1]);
+        let pulls = self.pulls(&local.rates);
+        let compliance = self.with_friction(&local.compliance, &pulls);
+        let mut forces = from_fn(|k| if held[k] { self.split[k] } else { T::constant(0.0) });
+        for (force, kinetic) in forces.iter_mut().zip(self.kinetic_forces()) {
+            *force = *force + kinetic;
+        }
+        self.rub(&mut forces, &pulls);
+        let right = local.accelerations(&forces).map(|a| -a);
+        let solve =
+            if self.contacts.iter().any(|contact| contact.role == Role::Gap) { spread } else { solve };
+        let change = solve(&compliance, &right, &held);
+        forces = from_fn(|k| if held[k] { forces[k] + change[k] } else { forces[k] });
+        self.rub(&mut forces, &pulls);
+        let levels = self.levels(&forces);
         let Some(loads) = loads else { return Acting { forces, levels, jam: None } };
         let [zero, one] = [0.0, 1.0].map(T::constant);
         let grows: [T; N] = from_fn(|k| match self.phases[k] {
@@ -166,8 +281,9 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             let mut response = [zero; N];
             if grows[j] > zero {
                 let way = if self.phases[j] == Phase::Up { -one } else { one };
-                response = solve(&local.compliance, &from_fn(|i| -way * local.compliance[i][j]), &held);
+                response = solve(&compliance, &from_fn(|i| -way * local.compliance[i][j]), &held);
                 response[j] = way;
+                self.rub(&mut response, &pulls);
             }
             response
         });
@@ -178,8 +294,66 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
                 let forces =
                     from_fn(|i| (0..N).fold(forces[i], |force, j| force + responses[j][i] * magnitudes[j]));
                 let loads = loads.at(&forces);
-                let levels = from_fn(|k| levels[k] + self.contacts[k].coefficients[1] * size(&loads[k]));
+                let levels = self.levels(&forces);
+                let levels = from_fn(|k| match self.contacts[k].is_loaded() {
+                    true => levels[k] + self.contacts[k].coefficients[1] * size(&loads[k]),
+                    false => levels[k],
+                });
                 Acting { forces, levels, jam: None }
+            }
+        }
+    }
+
+    /// The static levels of friction, but for what reactions add.
+    fn levels(&self, forces: &[T; N]) -> [T; N] {
+        self.contacts.map(|contact| match contact.slip() {
+            Some((gap, _)) => contact.coefficients[1] * at(forces, gap),
+            None => contact.levels[1],
+        })
+    }
+
+    /// Friction of surfaces that slide, for a push of one.
+    pub(super) fn pulls(&self, rates: &[T; N]) -> [T; N] {
+        let zero = T::constant(0.0);
+        from_fn(|k| {
+            let (contact, phase) = (&self.contacts[k], self.phases[k]);
+            let Some((gap, is_second)) = contact.slip().filter(|_| phase == Phase::Slides) else {
+                return zero;
+            };
+            let pair = [gap + 1, gap + 2];
+            let (slip, was) = (pair.map(|slip| at(rates, slip)), pair.map(|slip| at(&self.ways, slip)));
+            let [along, across] = from_fn(|i| slip[i] + self.vague[k] * was[i]);
+            let speed = (along * along + across * across).sqrt();
+            // Beyond the end of sliding, which steps may reach before it is found, friction is what it was.
+            let is_beyond = slip[0] * was[0] + slip[1] * was[1] < zero;
+            let way = match speed > zero && !is_beyond {
+                true => (if is_second { across } else { along }) / speed,
+                false => self.ways[k],
+            };
+            -contact.coefficients[0] * way
+        })
+    }
+
+    /// What pushes do together with the friction that they cause.
+    pub(super) fn with_friction(&self, compliance: &[[T; N]; N], pulls: &[T; N]) -> [[T; N]; N] {
+        let mut with = *compliance;
+        for (k, contact) in self.contacts.iter().enumerate() {
+            if let Some((gap, _)) =
+                contact.slip().filter(|(gap, _)| *gap < N && self.phases[k] == Phase::Slides)
+            {
+                for row in &mut with {
+                    row[gap] = row[gap] + pulls[k] * row[k];
+                }
+            }
+        }
+        with
+    }
+
+    /// Sets the friction of surfaces that slide.
+    fn rub(&self, forces: &mut [T; N], pulls: &[T; N]) {
+        for (k, contact) in self.contacts.iter().enumerate() {
+            if let Some((gap, _)) = contact.slip().filter(|_| self.phases[k] == Phase::Slides) {
+                forces[k] = pulls[k] * at(forces, gap);
             }
         }
     }
@@ -193,11 +367,13 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         let held = self.phases.map(Phase::is_held);
         let rubbing = from_fn(|k| {
             let contact = &self.contacts[k];
-            held[k] || contact.levels[0] > zero || contact.coefficients[0] > zero
+            held[k]
+                || contact.levels[0] > zero
+                || (contact.coefficients[0] > zero && self.phases[k] != Phase::Free)
         });
         let local = match held.contains(&true) {
             true => self.local(model, (t, y), &rubbing, scratch),
-            false => Local { bias: [zero; N], compliance: [[zero; N]; N] },
+            false => Local { rates: [zero; N], bias: [zero; N], compliance: [[zero; N]; N] },
         };
         let acting = self.acting(&local, self.loads(model, (t, y), &rubbing).as_ref());
         // At later stages of a step that has met a jam nothing is finite any more.
@@ -214,15 +390,6 @@ impl<T: Real, const N: usize> Local<T, N> {
         from_fn(|i| {
             self.compliance[i].iter().zip(forces).fold(self.bias[i], |sum, (w, force)| sum + *w * *force)
         })
-    }
-
-    /// All forces, those of what is held such that it is not accelerated.
-    pub(super) fn balance(&self, held: &[bool; N], others: &[T; N]) -> [T; N] {
-        let zero = T::constant(0.0);
-        let others = from_fn(|k| if held[k] { zero } else { others[k] });
-        let right = self.accelerations(&others).map(|a| -a);
-        let found = solve(&self.compliance, &right, held);
-        from_fn(|k| if held[k] { found[k] } else { others[k] })
     }
 }
 

@@ -3,7 +3,7 @@
 use super::equations::{Contacts, Forced, bounds};
 use super::loads::Acting;
 use super::small::at;
-use super::{Contact, Phase};
+use super::{Contact, Phase, Role};
 use crate::events::root;
 use crate::{Error, Real};
 
@@ -34,10 +34,33 @@ where
     let largest = T::constant(f64::from(f32::MAX));
     let some = |gap: T| if gap < infinite { gap } else { largest };
     let Acting { forces, levels, .. } = equations.forces(model, (t, y), scratch);
+    let places = equations.places(model, (t, y));
     let mut guards = [[largest; N]; 3];
     for (k, contact) in equations.contacts.iter().enumerate() {
-        let (x, rate) = (at(y.as_ref(), contact.coordinate), at(y.as_ref(), contact.rate));
-        let phase = equations.phases[k];
+        let ([x, rate], phase) = (places[k], equations.phases[k]);
+        if let Some((gap, is_second)) = contact.slip() {
+            // Both components together, as the first.
+            let pair = [gap + 1, gap + 2];
+            match phase {
+                _ if is_second => {}
+                Phase::Sticks => {
+                    let [along, across] = pair.map(|slip| at(&forces, slip));
+                    guards[0][k] = levels[k] + equations.slack[k] - (along * along + across * across).sqrt();
+                }
+                Phase::Slides => {
+                    let parts = pair.map(|slip| {
+                        places.get(slip).map_or(rate, |place| place[1]) * at(&equations.ways, slip)
+                    });
+                    guards[2][k] = parts[0] + parts[1] + equations.slowest;
+                }
+                _ => {}
+            }
+            continue;
+        }
+        if contact.role == Role::Gap && phase.is_held() {
+            guards[0][k] = forces[k] + equations.weakest;
+            continue;
+        }
         let (value, [low, high]) =
             if phase.is_held() { (forces[k], bounds(levels[k], phase)) } else { (x, contact.ends) };
         (guards[0][k], guards[1][k]) = (some(value - low), some(high - value));
@@ -51,10 +74,18 @@ where
 }
 
 /// How far rounding may take a guard below zero while it does not go there.
-pub(super) fn noise<T: Real>(contact: &Contact<T>, kind: usize, begin: T) -> T {
-    let end = contact.ends.get(kind).map_or(T::constant(0.0), |end| end.abs());
+pub(super) fn noise<T: Real>(contact: &Contact<T>, positions: &[T], kind: usize, begin: T) -> T {
+    let end = match contact.role {
+        Role::Gap => size(positions),
+        _ => contact.ends.get(kind).map_or(T::constant(0.0), |end| end.abs()),
+    };
     let rounding = if end.is_finite() { T::constant(4.0) * T::EPSILON * end } else { T::constant(0.0) };
     rounding - (begin + begin)
+}
+
+/// The largest of some numbers.
+pub(super) fn size<T: Real>(y: &[T]) -> T {
+    y.iter().fold(T::constant(0.0), |most, x| if x.abs() > most { x.abs() } else { most })
 }
 
 /// When a guard that is zero at a step's beginning, or beyond, is passed in it.

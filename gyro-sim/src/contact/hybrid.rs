@@ -1,12 +1,11 @@
 //! The motion: steps, and what happens at their ends.
 
 use super::equations::{Contacts, Forced, Kept};
-use super::guards::{Guards, guards, noise, passed};
+use super::guards::{Guards, guards};
 use super::settle::{Change, Ledger, Next, Record};
 use super::small::at;
-use super::{Contact, Error, Phase};
+use super::{Contact, Error, Phase, Role};
 use crate::contract::Storage;
-use crate::events::{Found, first_falling};
 use crate::integrate::Method;
 use crate::solver::Mark;
 use crate::{Control, Correction, Real, Solver, Statistics, Tried, Uncorrected};
@@ -14,9 +13,9 @@ use crate::{Control, Correction, Real, Solver, Statistics, Tried, Uncorrected};
 /// A motion with contacts, by any method that is explicit.
 #[derive(Clone, Debug)]
 pub struct Hybrid<D, S, T, A, C, const N: usize> {
-    solver: Solver<Contacts<D, T, N>, S, T, A, Kept<C>>,
-    mark: Mark<S, T>,
-    scratch: [S; 2],
+    pub(super) solver: Solver<Contacts<D, T, N>, S, T, A, Kept<C>>,
+    pub(super) mark: Mark<S, T>,
+    pub(super) scratch: [S; 2],
     ledger: Ledger<T, N>,
     is_begun: bool,
     /// What the last step has ended at, and its length before it was cut short.
@@ -36,8 +35,6 @@ enum Pending<T> {
 
 /// So many events without a step between them mean that there is no consistent way on.
 const MOST_STALLED: u32 = 64;
-/// The end of a step is brought to an event by so many further steps at most.
-const POLISHES: u32 = 3;
 
 impl<D, S: Storage<T>, T: Real, A, const N: usize> Hybrid<D, S, T, A, Uncorrected, N> {
     /// A motion that starts at `y` at time `t`, without corrections.
@@ -225,10 +222,11 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     {
         self.begin(model)?;
         self.solver.step_watched(model, t_end, watch).map_err(|error| self.reason(error))?;
-        self.pin();
+        self.pin(model);
         let h = self.solver.last_step();
         let Some(next) = self.find(model)? else {
             self.ledger.stalled = 0;
+            self.turn(model);
             return Ok(false);
         };
         self.end_at(model, h, &next)?;
@@ -285,13 +283,15 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         C: Correction<D, M>,
     {
         self.begin(model)?;
-        self.ledger.begin(&self.solver.dynamics().contacts, self.solver.state().as_ref());
+        let places = self.solver.dynamics().places(model, (self.solver.time(), self.solver.state()));
+        self.ledger.begin(places.map(|[_, rate]| rate));
         self.solver.step(model, h).map_err(|error| self.reason(error))?;
-        self.pin();
+        self.pin(model);
         let guards = self.guards(model);
         let is_passed = guards.as_ref().iter().any(|guard| *guard < T::constant(0.0));
         if !is_passed {
             self.ledger.pass();
+            self.turn(model);
         }
         self.pending = is_passed.then_some(Pending::Step);
         Ok(())
@@ -311,7 +311,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         let Contacts { contacts, phases, .. } = self.solver.dynamics();
         let y = self.solver.state();
         for (contact, phase) in contacts.iter().zip(phases) {
-            if phase.is_held() {
+            if phase.is_held() && contact.role == Role::Coordinate {
                 out.as_mut()[contact.coordinate] = y.as_ref()[contact.coordinate];
                 out.as_mut()[contact.rate] = y.as_ref()[contact.rate];
             }
@@ -330,7 +330,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     {
         self.solver.mark(&mut self.mark);
         self.solver.correct(model)?;
-        self.pin();
+        self.pin(model);
         Ok(())
     }
 
@@ -349,7 +349,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     }
 
     /// Where friction may jam no step leads on, for this one reason.
-    fn reason(&self, error: crate::Error) -> Error {
+    pub(super) fn reason(&self, error: crate::Error) -> Error {
         let equations = self.solver.dynamics();
         match (error, equations.jam.get()) {
             (crate::Error::NotFinite { .. } | crate::Error::StepTooShort { .. }, Some(jam)) => {
@@ -359,15 +359,34 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         }
     }
 
-    /// Closing loops moves all coordinates by rounding, but not those that are held.
-    fn pin(&mut self) {
+    /// Closing loops moves all coordinates by rounding, but not those that are held; and surfaces that touch neither
+    /// part nor slip by what a step's error is.
+    pub(super) fn pin<M>(&mut self, model: &M)
+    where
+        D: Forced<M, Scalar = T, State = S>,
+    {
         let (contacts, phases) = (self.solver.dynamics().contacts, self.solver.dynamics().phases);
         for (contact, phase) in contacts.iter().zip(phases) {
-            if phase.is_held() {
+            if phase.is_held() && contact.role == Role::Coordinate {
                 self.solver.pin(&self.mark, contact.coordinate);
                 self.solver.pin(&self.mark, contact.rate);
             }
         }
+        let equations = self.solver.dynamics();
+        if equations.has_surfaces::<M>() && phases.iter().any(|phase| phase.is_held()) {
+            let (t, mut y) = (self.solver.time(), self.solver.state().clone());
+            equations.hold(model, (t, &mut y), &phases.map(Phase::is_held), &mut self.scratch);
+            self.solver.replace(&y);
+        }
+    }
+
+    /// Has surfaces that slide go on in the direction that they have now.
+    fn turn<M>(&mut self, model: &M)
+    where
+        D: Forced<M, Scalar = T, State = S>,
+    {
+        let (t, y) = (self.solver.time(), self.solver.state().clone());
+        self.solver.dynamics_mut().turn(model, (t, &y));
     }
 
     /// Decides what happens at the end of the last step.
@@ -382,119 +401,11 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         self.solver.system_has_changed();
     }
 
-    fn guards<M>(&mut self, model: &M) -> Guards<T, N>
+    pub(super) fn guards<M>(&mut self, model: &M) -> Guards<T, N>
     where
         D: Forced<M, Scalar = T, State = S>,
     {
         let (t, y) = (self.solver.time(), self.solver.state());
         guards(self.solver.dynamics(), model, (t, y), &mut self.scratch[1])
-    }
-
-    /// The first event within the last step.
-    fn find<M>(&mut self, model: &M) -> Result<Option<Next<T>>, Error>
-    where
-        D: Forced<M, Scalar = T, State = S>,
-        A: Method<Contacts<D, T, N>, M>,
-        C: Correction<D, M>,
-    {
-        let zero = T::constant(0.0);
-        let contacts = self.solver.dynamics().contacts;
-        let solver = &mut self.solver;
-        let [y, scratch] = &mut self.scratch;
-        let mut values = |theta: T| {
-            let t = solver.within(model, theta, y)?;
-            Ok::<_, crate::Error>(guards(solver.dynamics(), model, (t, y), scratch))
-        };
-        let begin = values(zero)?.0;
-        let first = first_falling(&mut values)?;
-        let mut first =
-            first.map(|Found { event, theta, .. }| Next { theta, kind: event / N, contact: event % N });
-        // Guards that begin at zero have been passed by no crossing.
-        for (kind, contact) in (0..3).flat_map(|kind| (0..N).map(move |contact| (kind, contact))) {
-            if begin[kind][contact] <= zero {
-                let value = |theta: T| Ok(values(theta)?.0[kind][contact]);
-                let noise = noise(&contacts[contact], kind, begin[kind][contact]);
-                if let Some(theta) = passed(value, noise)?
-                    && first.as_ref().is_none_or(|next| theta < next.theta)
-                {
-                    first = Some(Next { theta, kind, contact });
-                }
-            }
-        }
-        Ok(first)
-    }
-
-    /// The event at which the step has been ended, or one before it: a step that was taken again is more exact than
-    /// what was interpolated, and may have gone through another stop.
-    fn before<M>(&mut self, model: &M, mut next: Next<T>) -> Result<Next<T>, Error>
-    where
-        D: Forced<M, Scalar = T, State = S>,
-        A: Method<Contacts<D, T, N>, M>,
-        C: Correction<D, M>,
-    {
-        for _ in 0..N {
-            let Contacts { contacts, phases, .. } = *self.solver.dynamics();
-            let Guards(guards) = self.guards(model);
-            let zero = T::constant(0.0);
-            let is_passed = |kind: usize, k: usize| {
-                let is_own = (kind, k) == (next.kind, next.contact);
-                !is_own && !phases[k].is_held() && guards[kind][k] < -noise(&contacts[k], kind, zero)
-            };
-            let is_any = (0..2).any(|kind| (0..N).any(|k| is_passed(kind, k)));
-            let h = self.solver.last_step();
-            match if is_any && next.theta > zero { self.find(model)? } else { None } {
-                Some(earlier) if (earlier.kind, earlier.contact) != (next.kind, next.contact) => {
-                    self.end_at(model, h, &earlier)?;
-                    next = earlier;
-                }
-                _ => break,
-            }
-        }
-        Ok(next)
-    }
-
-    /// Takes the last step again, up to an event: by the method, whose states are better than what it interpolates.
-    fn end_at<M>(&mut self, model: &M, h: T, next: &Next<T>) -> Result<(), Error>
-    where
-        D: Forced<M, Scalar = T, State = S>,
-        A: Method<Contacts<D, T, N>, M>,
-        C: Correction<D, M>,
-    {
-        let (zero, mut length) = (T::constant(0.0), next.theta * h);
-        if length <= zero {
-            self.solver.rewind(&self.mark);
-            return Ok(());
-        }
-        // By the secant, from what the guard is a little before.
-        let before = length * T::constant(1.0 - 1.0 / 64.0);
-        let mut last = (before, self.guard_after(model, before, next)?);
-        let mut value = self.guard_after(model, length, next)?;
-        for _ in 0..POLISHES {
-            let change = value * (length - last.0) / (value - last.1);
-            let is_better = change.is_finite() && change.abs() < T::constant(0.1) * length;
-            if value == zero || !is_better || change.abs() <= T::EPSILON * length {
-                break;
-            }
-            last = (length, value);
-            length = length - change;
-            value = self.guard_after(model, length, next)?;
-        }
-        if value.abs() > last.1.abs() {
-            self.guard_after(model, last.0, next)?;
-        }
-        Ok(())
-    }
-
-    /// Takes a step from the mark, and returns a guard at its end.
-    fn guard_after<M>(&mut self, model: &M, h: T, next: &Next<T>) -> Result<T, Error>
-    where
-        D: Forced<M, Scalar = T, State = S>,
-        A: Method<Contacts<D, T, N>, M>,
-        C: Correction<D, M>,
-    {
-        self.solver.rewind(&self.mark);
-        self.solver.step(model, h).map_err(|error| self.reason(error))?;
-        self.pin();
-        Ok(self.guards(model).0[next.kind][next.contact])
     }
 }

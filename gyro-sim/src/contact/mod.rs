@@ -1,4 +1,5 @@
-//! Rigid stops and dry friction that sticks, on coordinates of a system: motions in phases, with events between them.
+//! Rigid stops and dry friction that sticks, on coordinates of a system, and surfaces that touch: motions in phases,
+//! with events between them.
 //!
 //! A [`Contact`] acts along one coordinate. It may stop the coordinate at two ends, each unilateral: the coordinate
 //! *hits* it, with an impulse that reverses the rate by Newton's law of restitution; *rests* on it, held by a force
@@ -47,6 +48,13 @@
 //! # }
 //! ```
 //!
+//! # Surfaces
+//! Two bodies that touch at a point are three contacts ([`Contact::surfaces`]): the gap between them, which is
+//! unilateral, and the velocities of slip along two tangents. Friction is within the cone `|f| ≤ μ f_push`, and against
+//! the slip exactly where there is some. With any of them all that is said below of impacts and rest is one
+//! complementarity problem in cones, which is solved by relaxation and by Newton's method; impacts have friction, and
+//! restitution after Newton or Poisson. What rests is projected after each step: neither gap nor slip drifts.
+//!
 //! # What is solved when phases change
 //! * **Impacts.** All contacts that are hit, and those rested on, at one instant are resolved together: impulses P with
 //!   the rates `u⁺ = u⁻ + W P` after them, P ≥ 0, `u⁺ + e u⁻ ≥ 0`, one of both zero (outward positive). A stop that is
@@ -78,6 +86,7 @@
 //! beginning and the end of the step: a stop that is found late gives no energy, and flights shorter than a step are
 //! none, so that what bounces comes to rest.
 
+mod cones;
 mod equations;
 mod error;
 mod guards;
@@ -85,6 +94,8 @@ mod hybrid;
 mod joint;
 mod loads;
 mod resolve;
+mod rest;
+mod search;
 mod settle;
 mod small;
 mod stepped;
@@ -101,6 +112,7 @@ use crate::Real;
 /// What acts along a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact<T> {
+    role: Role,
     /// The indices of the coordinate and of its rate in the state.
     coordinate: usize,
     rate: usize,
@@ -110,6 +122,19 @@ pub struct Contact<T> {
     /// Kinetic and static level of friction, and what the reaction adds to them.
     levels: [T; 2],
     coefficients: [T; 2],
+    /// Whether restitution is that of impulses (Poisson) rather than that of rates (Newton).
+    is_of_impulses: bool,
+}
+
+/// What the value and the rate of a contact are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Role {
+    /// Elements of the state.
+    Coordinate,
+    /// The gap between two surfaces, which the system tells.
+    Gap,
+    /// A component of the velocity with which surfaces slip: of which gap, and the first or the second.
+    Slip { gap: usize, is_second: bool },
 }
 
 impl<T: Real> Contact<T> {
@@ -118,13 +143,37 @@ impl<T: Real> Contact<T> {
     pub fn new(coordinate: usize, rate: usize) -> Self {
         let (zero, infinite) = (T::constant(0.0), T::constant(f64::INFINITY));
         Self {
+            role: Role::Coordinate,
             coordinate,
             rate,
             ends: [-infinite, infinite],
             restitution: zero,
             levels: [zero; 2],
             coefficients: [zero; 2],
+            is_of_impulses: false,
         }
+    }
+
+    /// Two surfaces that touch at a point: three contacts, of which the first has this place among all. They are the
+    /// gap and the two components of the velocity with which the surfaces slip, of all of which the system tells value,
+    /// rate and acceleration ([`Forced::seen`]); their forces push along the normal and rub along the two tangents.
+    /// Restitution is that of rates (Newton) or of impulses (Poisson). Friction holds, or opposes the direction of slip
+    /// exactly, with the static or the kinetic coefficient times the push; `None` unless restitution is between 0 and 1
+    /// and `0 ≤ kinetic ≤ static`, both finite.
+    #[must_use]
+    pub fn surfaces(place: usize, restitution: Restitution<T>, coefficients: [T; 2]) -> Option<[Self; 3]> {
+        let (zero, none) = (T::constant(0.0), usize::MAX);
+        let (share, is_of_impulses) = match restitution {
+            Restitution::Newton(share) => (share, false),
+            Restitution::Poisson(share) => (share, true),
+        };
+        let of = |role| Self { role, ..Self::new(none, none) };
+        let gap = Self { is_of_impulses, ..of(Role::Gap) };
+        let gap = gap.with_stops([zero, T::constant(f64::INFINITY)], share)?;
+        let slip = |is_second| {
+            of(Role::Slip { gap: place, is_second }).with_loaded_friction(coefficients[0], coefficients[1])
+        };
+        Some([gap, slip(false)?, slip(true)?])
     }
 
     /// Stops at a lower and an upper end, in the coordinate's unit, infinite where there is none, with a coefficient of
@@ -154,17 +203,40 @@ impl<T: Real> Contact<T> {
 
     /// Whether it does anything.
     fn acts(&self) -> bool {
-        self.rubs() || self.ends.iter().any(|end| end.is_finite())
+        self.rubs() || self.grips() || self.ends.iter().any(|end| end.is_finite())
     }
 
+    /// Whether friction opposes a coordinate.
     fn rubs(&self) -> bool {
         self.levels[1] > T::constant(0.0) || self.is_loaded()
     }
 
     /// Whether its friction depends on a reaction.
     fn is_loaded(&self) -> bool {
-        self.coefficients[1] > T::constant(0.0)
+        self.role == Role::Coordinate && self.coefficients[1] > T::constant(0.0)
     }
+
+    /// Whether friction opposes the slip of surfaces.
+    fn grips(&self) -> bool {
+        self.role != Role::Coordinate && self.coefficients[1] > T::constant(0.0)
+    }
+
+    /// The gap whose push bounds friction, and whether this is the second of the two components.
+    fn slip(&self) -> Option<(usize, bool)> {
+        match self.role {
+            Role::Slip { gap, is_second } => Some((gap, is_second)),
+            Role::Coordinate | Role::Gap => None,
+        }
+    }
+}
+
+/// What is left after an impact of surfaces: a part from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Restitution<T> {
+    /// Of the rate at which they approach each other.
+    Newton(T),
+    /// Of the impulse that ends the approach.
+    Poisson(T),
 }
 
 /// What a contact does for the time being.
@@ -182,6 +254,8 @@ pub enum Phase {
     AtLower,
     /// It rests on its upper stop.
     AtUpper,
+    /// Surfaces slip on each other, against friction.
+    Slides,
 }
 
 impl Phase {

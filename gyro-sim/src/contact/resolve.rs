@@ -7,9 +7,9 @@ use super::{Contact, Error, Phase};
 use crate::Real;
 
 /// Inequalities may be violated by this part of what stands in them: they are computed from roots that are rounded.
-const ROUNDING: f64 = 1e-10;
+pub(super) const ROUNDING: f64 = 1e-10;
 /// More than this part means that there is no solution.
-const UNMET: f64 = 1e-6;
+pub(super) const UNMET: f64 = 1e-6;
 
 /// A stop that is hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -249,6 +249,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         self.dynamics.forced(model, t, y, &forces, base);
         // At the rates before all impulses: accelerations depend on rates, but what a force adds does not.
         let before = y.clone();
+        let places = self.places(model, (t, &before));
         for k in (0..N).filter(|k| impulses[*k] != zero) {
             forces[k] = T::constant(LARGE);
             self.dynamics.forced(model, t, &before, &forces, pushed);
@@ -263,7 +264,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
                 && let Some(work) = y.as_mut().get_mut(place)
             {
                 // Less the power of the force itself: that is what the impact takes.
-                let own = T::constant(LARGE) * at(before.as_ref(), self.contacts[k].rate);
+                let own = T::constant(LARGE) * places[k][1];
                 let change = at(pushed.as_ref(), place) - at(base.as_ref(), place) - own;
                 *work = T::fused(change, part, *work);
             }

@@ -1,10 +1,10 @@
 //! What happens at the end of a step: impacts, rest, sticking, letting go.
 
 use super::equations::{Contacts, Forced};
-use super::guards::{Guards, guards};
+use super::guards::{Guards, guards, size};
 use super::resolve::{Hit, impulses, work};
-use super::small::{at, set};
-use super::{Contact, Error, Phase};
+use super::small::{at, larger, set};
+use super::{Contact, Error, Phase, Role};
 use crate::Real;
 
 /// A rebound slower than this part of the fastest impact is none.
@@ -76,8 +76,8 @@ impl<T: Real, const N: usize> Ledger<T, N> {
     }
 
     /// A step of fixed length begins.
-    pub(super) fn begin(&mut self, contacts: &[Contact<T>; N], y: &[T]) {
-        self.began = Some(contacts.map(|contact| at(y, contact.rate)));
+    pub(super) fn begin(&mut self, rates: [T; N]) {
+        self.began = Some(rates);
     }
 
     /// It has ended, and nothing has happened in it.
@@ -103,15 +103,16 @@ impl<T: Real, const N: usize> Ledger<T, N> {
     {
         let zero = T::constant(0.0);
         let Guards(guards) = guards(equations, model, (t, y), &mut scratch[1]);
+        let places = equations.places(model, (t, y));
+        let size = size(&y.as_ref()[..equations.dynamics.rates(model).start]);
         let (contacts, phases) = (equations.contacts, equations.phases);
         let jumped = self.jumped.take();
         let length = next.map(|(_, h)| h).or(jumped.map(|(_, h)| h));
         let is_due = |kind: usize, k: usize| {
             guards[kind][k] <= zero
                 || next.is_some_and(|(next, _)| next.kind == kind && next.contact == k)
-                || length.is_some_and(|h| {
-                    is_as_good_as_reached((&contacts[k], phases[k]), y.as_ref(), guards[kind][k], h)
-                })
+                || length.is_some_and(|h| is_as_good_as_reached(phases[k], places[k], guards[kind][k], h))
+                || (contacts[k].role == Role::Gap && kind == 0 && guards[kind][k] <= rounding(size))
         };
         let at_lower: [bool; N] = core::array::from_fn(|k| !phases[k].is_held() && is_due(0, k));
         let at_upper: [bool; N] = core::array::from_fn(|k| !phases[k].is_held() && is_due(1, k));
@@ -125,29 +126,108 @@ impl<T: Real, const N: usize> Ledger<T, N> {
                 set(y.as_mut(), contact.rate, zero);
             }
         }
+        // Surfaces that slide are brought to rest where their velocity has no other component.
+        let caught: [bool; N] = core::array::from_fn(|k| {
+            let is_it = next.is_some_and(|(next, _)| next.kind == 2 && next.contact == k);
+            jumped.is_none() && phases[k] == Phase::Slides && (is_it || guards[2][k] < zero)
+        });
         // What has rested on a stop does not hit it.
         let before: [T; N] = core::array::from_fn(|k| match jumped {
             Some((rates, _)) if rates[k] == zero => zero,
-            _ => at(y.as_ref(), contacts[k].rate),
+            _ if contacts[k].role == Role::Coordinate => at(y.as_ref(), contacts[k].rate),
+            _ => places[k][1],
         });
         let touched = [&at_lower, &at_upper];
-        let hits = self.hits(equations, (y.as_mut(), &before), touched, next.map(|(next, _)| next));
-        self.collide(equations, (model, t), y, &hits, scratch);
-        let chosen = equations.choose(model, (t, y), &reached, &mut scratch[0]);
+        let hits = self.hits(equations, (y.as_mut(), &before, size), touched, next.map(|(next, _)| next));
+        let chosen = if equations.has_surfaces::<M>() {
+            let fastest = fastest(y.as_ref(), &places) + length.map_or(zero, |h| equations.largest * h);
+            equations.slowest = larger(equations.slowest, rounding(fastest));
+            self.touch(equations, (model, t), y, (&hits, [&caught, &reached], next.is_none()), scratch)
+        } else {
+            self.collide(equations, (model, t), y, &hits, scratch);
+            equations.choose(model, (t, y), &reached, &mut scratch[0])
+        };
+        let after = equations.places(model, (t, y));
         self.note(&phases, &equations.phases, |k| {
             // What leaves its stop and is taken back to it has not hit another one.
             let is_hit = |(_, is_upper)| if is_upper { before[k] > zero } else { before[k] < zero };
-            hits[k].is_some_and(is_hit).then(|| [before[k], at(y.as_ref(), contacts[k].rate)])
+            hits[k].is_some_and(is_hit).then(|| [before[k], after[k][1]])
         });
         self.began = None;
         chosen
     }
 
+    /// The same where surfaces touch, whose friction has impulses: impacts; then what rests neither parts nor slips,
+    /// and the phases after that. At the end of a step of fixed length what has passed through is set back.
+    fn touch<M, D>(
+        &mut self,
+        equations: &mut Contacts<D, T, N>,
+        (model, t): (&M, T),
+        y: &mut D::State,
+        (hits, [caught, reached], is_late): (&[Touched<T>; N], [&[bool; N]; 2], bool),
+        scratch: &mut [D::State; 2],
+    ) -> Result<(), Error>
+    where
+        D: Forced<M, Scalar = T>,
+    {
+        let zero = T::constant(0.0);
+        let contacts = equations.contacts;
+        let mut impulses = [zero; N];
+        let rates = equations.places(model, (t, y)).map(|[_, rate]| rate);
+        if (0..N).any(|k| hits[k].is_some_and(|(hit, _)| hit.outward * rates[k] < zero)) {
+            let meets = |k: usize| contacts.get(k).is_some_and(|_| hits[k].is_some());
+            let chosen = core::array::from_fn(|k| match contacts[k].slip() {
+                Some((gap, _)) => contacts[k].acts() && meets(gap),
+                None => meets(k),
+            });
+            let local = equations.local(model, (t, y), &chosen, &mut scratch[0]);
+            let outcome = equations
+                .struck(&local, &hits.map(|hit| hit.map(|(hit, _)| hit)))
+                .map_err(|jam| equations.jammed(t, &jam))?;
+            self.record.lost = self.record.lost - work(&outcome, &local.rates);
+            let met = (0..N).filter(|k| chosen[*k]).map(|k| local.bias[k].abs());
+            equations.largest = met.fold(equations.largest, larger);
+            let [base, pushed] = scratch;
+            equations.push(model, (t, y), &outcome.0, [base, pushed]);
+            impulses = outcome.0;
+        }
+        let places = equations.places(model, (t, y));
+        let slowest = equations.slowest;
+        let mut rests = [false; N];
+        for (k, (contact, hit)) in contacts.iter().zip(hits).enumerate() {
+            let Some((Hit { outward, rebound }, is_upper)) = *hit else { continue };
+            let (push, rate) = (outward * impulses[k], outward * places[k][1]);
+            rests[k] = rebound <= zero && (push > zero || rate.abs() <= slowest);
+            if contact.role == Role::Coordinate && (rests[k] || rate < zero) {
+                set(y.as_mut(), contact.rate, zero);
+                set(y.as_mut(), contact.coordinate, contact.ends[usize::from(is_upper)]);
+            }
+        }
+        let still: [bool; N] = core::array::from_fn(|k| {
+            contacts[k].slip().is_some_and(|(gap, _)| {
+                let [along, across] =
+                    [gap + 1, gap + 2].map(|slip| places.get(slip).map_or(zero, |place| place[1]));
+                let speed = (along * along + across * across).sqrt();
+                let is_caught = caught.get(gap + 1).is_some_and(|caught| *caught);
+                let is_slow =
+                    speed <= slowest + slowest || (is_caught && (is_late || speed <= equations.vague[k]));
+                rests.get(gap).is_some_and(|rests| *rests) && is_slow
+            })
+        });
+        let held = core::array::from_fn(|k| match contacts[k].role {
+            Role::Coordinate => equations.phases[k].is_held() || rests[k],
+            Role::Gap => rests[k],
+            Role::Slip { .. } => still[k] && contacts[k].acts(),
+        });
+        equations.hold(model, (t, y), &held, scratch);
+        equations.choose_surfaces(model, (t, y), [&rests, &still, reached], &mut scratch[0])
+    }
+
     /// The stops that are hit, those that are rested on and those that are touched.
     fn hits<D>(
         &mut self,
-        Contacts { contacts, phases, .. }: &Contacts<D, T, N>,
-        (y, rates): (&mut [T], &[T; N]),
+        Contacts { contacts, phases, largest, .. }: &Contacts<D, T, N>,
+        (y, rates, size): (&mut [T], &[T; N], T),
         [at_lower, at_upper]: [&[bool; N]; 2],
         next: Option<&Next<T>>,
     ) -> [Touched<T>; N] {
@@ -180,10 +260,16 @@ impl<T: Real, const N: usize> Ledger<T, N> {
             *fastest = if approach > *fastest { approach } else { *fastest };
             let restitution =
                 restitution * self.began.map_or(one, |began| share(-outward * began[k], approach));
-            let is_slow = restitution * approach <= T::constant(SLOWEST) * *fastest;
+            let rebound = restitution * approach;
+            // A gap that rounding hides is none.
+            let hidden = match contacts[k].role {
+                Role::Gap => (T::constant(2.0) * *largest * rounding(size)).sqrt(),
+                _ => zero,
+            };
+            let is_slow = rebound <= larger(T::constant(SLOWEST) * *fastest, hidden);
             record.settled += u64::from(is_slow && approach > zero && contacts[k].restitution > zero);
             record.impacts += u64::from(approach > zero);
-            let rebound = if is_slow { zero } else { restitution * approach };
+            let rebound = if is_slow { zero } else { rebound };
             Some((Hit { outward, rebound }, is_upper))
         })
     }
@@ -245,7 +331,16 @@ fn share<T: Real>(began: T, ended: T) -> T {
 }
 
 /// Whether a coordinate is so near a stop that the time to it is rounding.
-fn is_as_good_as_reached<T: Real>((contact, phase): (&Contact<T>, Phase), y: &[T], gap: T, h: T) -> bool {
-    let (rate, place) = (at(y, contact.rate).abs(), at(y, contact.coordinate).abs());
-    !phase.is_held() && gap.abs() <= T::constant(64.0) * T::EPSILON * (rate * h + place)
+fn is_as_good_as_reached<T: Real>(phase: Phase, [place, rate]: [T; 2], gap: T, h: T) -> bool {
+    !phase.is_held() && gap.abs() <= rounding(rate.abs() * h + place.abs())
+}
+
+/// Some roundings of a number of this size.
+fn rounding<T: Real>(size: T) -> T {
+    T::constant(64.0) * T::EPSILON * size
+}
+
+/// The fastest rate of a state, and of contacts.
+fn fastest<T: Real, const N: usize>(y: &[T], places: &[[T; 2]; N]) -> T {
+    places.iter().fold(size(y), |most, [_, rate]| larger(most, rate.abs()))
 }

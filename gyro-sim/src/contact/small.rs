@@ -5,6 +5,10 @@ use crate::Real;
 /// A pivot of less than this part of its diagonal depends on the others.
 const DEPENDENT: f64 = 1e-10;
 
+/// What is added to the diagonal, as a part of it, and how often at most it is taken back.
+const EVENLY: f64 = 1e-4;
+const ITERATIONS: usize = 12;
+
 /// A number to which something is decided, but not less than what rounding leaves of it in this precision.
 pub(super) fn not_below_rounding<T: Real>(limit: f64) -> T {
     let (limit, rounding) = (T::constant(limit), T::constant(ROUNDINGS) * T::EPSILON);
@@ -13,6 +17,11 @@ pub(super) fn not_below_rounding<T: Real>(limit: f64) -> T {
 
 /// So many roundings are in what is decided.
 const ROUNDINGS: f64 = 64.0;
+
+/// The larger of two numbers.
+pub(super) fn larger<T: Real>(a: T, b: T) -> T {
+    if b > a { b } else { a }
+}
 
 /// An element of a state; zero if there is none of this index.
 pub(super) fn at<T: Real>(y: &[T], index: usize) -> T {
@@ -24,6 +33,34 @@ pub(super) fn set<T>(y: &mut [T], index: usize, value: T) {
     if let Some(place) = y.get_mut(index) {
         *place = value;
     }
+}
+
+/// The same where W is of surfaces that touch at more points than carry: that solution is approached of which no part
+/// is large. A little is added to the diagonal, and taken back by iteration.
+pub(super) fn spread<T: Real, const N: usize>(
+    matrix: &[[T; N]; N],
+    right: &[T; N],
+    chosen: &[bool; N],
+) -> [T; N] {
+    let zero = T::constant(0.0);
+    let mut more = *matrix;
+    for (k, row) in more.iter_mut().enumerate() {
+        row[k] = row[k] + T::constant(EVENLY) * row[k].abs();
+    }
+    let (mut found, mut rest, mut last) = ([zero; N], *right, T::constant(f64::INFINITY));
+    for _ in 0..ITERATIONS {
+        let change = solve(&more, &rest, chosen);
+        let next: [T; N] = core::array::from_fn(|k| found[k] + change[k]);
+        let left: [T; N] = core::array::from_fn(|i| {
+            (0..N).filter(|k| chosen[*k]).fold(right[i], |sum, k| sum - matrix[i][k] * next[k])
+        });
+        let size = (0..N).filter(|k| chosen[*k]).fold(zero, |most, k| larger(most, left[k].abs()));
+        if size >= last {
+            break;
+        }
+        (found, rest, last) = (next, left, size);
+    }
+    found
 }
 
 /// Solves `W x = b` for the unknowns that are chosen, W being symmetric and positive semidefinite; the others, and

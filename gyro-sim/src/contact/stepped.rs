@@ -84,13 +84,19 @@ impl<D, S: Storage<T>, T: Real, const N: usize> Stepped<D, S, T, N> {
         }
         for step in 0..n_steps {
             let [begin, end] = [step, step + 1].map(|step| t + h * T::constant(f64::from(step)));
-            self.ledger.begin(&self.equations.contacts, y.as_ref());
+            let places = self.equations.places(model, (begin, y));
+            self.ledger.begin(places.map(|[_, rate]| rate));
             self.rk4.step(&self.equations, model, begin, h, y);
+            let held = self.equations.phases.map(Phase::is_held);
+            if held.contains(&true) && self.equations.has_surfaces::<M>() {
+                self.equations.hold(model, (end, y), &held, &mut self.scratch);
+            }
             let guards = guards(&self.equations, model, (end, y), &mut self.scratch[1]);
             if guards.as_ref().iter().any(|guard| *guard < T::constant(0.0)) {
                 self.settle(model, end, y)?;
             } else {
                 self.ledger.pass();
+                self.equations.turn(model, (end, y));
             }
         }
         match self.equations.jam.take() {

@@ -5,6 +5,7 @@ mod listed;
 mod loads;
 mod loops;
 mod stepped;
+mod surfaces;
 
 use super::resolve::{Hit, impulses, work};
 use super::{Contact, Forced, Hybrid, Phase};
@@ -362,6 +363,7 @@ fn friction_on_coupled_coordinates_is_consistent_and_agrees_with_fixed_steps() {
                     Phase::Sticks => rate == 0.0 && force.abs() <= at_rest * (1.0 + 1e-12),
                     Phase::AtLower => rate == 0.0 && y[k] == -0.5 && force >= -at_rest * (1.0 + 1e-12),
                     Phase::AtUpper => rate == 0.0 && y[k] == 0.5 && force <= at_rest * (1.0 + 1e-12),
+                    Phase::Slides => false,
                 };
                 assert!(is_consistent, "case {case} at {}: {k} {phase:?} {y:?} {forces:?}", motion.time());
             }

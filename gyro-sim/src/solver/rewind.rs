@@ -42,6 +42,12 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         *now = kept;
     }
 
+    /// Puts in the state's place one that a correction of it has made.
+    pub(crate) fn replace(&mut self, y: &S) {
+        self.y.as_mut().copy_from_slice(y.as_ref());
+        self.is_untouched = false;
+    }
+
     /// The length of the last step, s.
     pub(crate) fn last_step(&self) -> T {
         self.before.2

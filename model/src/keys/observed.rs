@@ -72,6 +72,11 @@ pub static OUTPUT: Table = Table::new(
         "the value of a formula, see [laws](laws.md)",
         &[text("of", "the formula").required().eg("of = \"...\"")],
     ),
+    kind(
+        "rate",
+        "the time derivative of a formula, see below",
+        &[text("of", "the formula").required().eg("of = \"hinge rate\"")],
+    ),
     kind("energy", "kinetic and potential energy (J)", &[]),
     kind("power", "power of all non-conservative forces, and of drivers and driven bodies (W)", &[]),
 ]);
@@ -246,9 +251,15 @@ pub static CONTACT: Table = Table::new(
         number("upper", "rad or m", "the upper stop")
             .eg("upper = ..., in rad or m, lower = ..., friction = ..., in N.m or N, or friction_coefficient = ...")
             .or("none"),
-        number("restitution", "", "the part of its rate with which the coordinate rebounds from a stop, 0 to 1")
+        number("restitution", "", "the part of its rate with which what hits rebounds, 0 to 1; between bodies it makes them rigid")
             .eg("restitution = ..., from 0 to 1: the part of its rate with which the joint rebounds")
             .or("required with stops"),
+        word(
+            "impact_law",
+            &[("newton", "`restitution` is of rates"), ("poisson", "`restitution` is of impulses")],
+            "of rigid bodies",
+        )
+        .or("\"newton\""),
         number("friction", "N.m or N", "the kinetic level of dry friction").not_negative("").or("0"),
         number("static_friction", "N.m or N", "the static level, not below the kinetic one")
             .or("that of `friction`"),
@@ -266,7 +277,8 @@ pub static CONTACT: Table = Table::new(
         Key::new("between", Value::Tables(&CONTACT_SIDE), "two tables of `body` and, unless all of its shapes are meant, `shape`")
             .eg("between = [{ body = \"...\" }, { body = \"...\" }]")
             .or("on a joint"),
-        number("stiffness", "N/m^exponent", "of the surfaces").positive("they would not touch").or("required between bodies"),
+        number("stiffness", "N/m^exponent", "of the surfaces").positive("they would not touch")
+            .or("required between bodies without `restitution`"),
         number("exponent", "", "1.5 for bodies that are round where they touch, 1 for a linear spring")
             .positive("the force would jump")
             .or("1.5"),

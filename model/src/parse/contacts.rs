@@ -1,6 +1,6 @@
 //! Rigid stops and friction that sticks.
 
-use num_traits::Zero;
+use num_traits::{One, Signed, Zero};
 
 use super::reader::Reader;
 use super::references::{self, NO_COORDINATE};
@@ -9,7 +9,9 @@ use super::{names, parameters, tables};
 use crate::diagnostics::Related;
 use crate::keys::{CONTACT, CONTACT_SIDE};
 use crate::validate::{Owner, Place};
-use crate::{Contact, Element, Force, ForceKind, Joint, Number, Output, OutputKind, Parameter, Rational};
+use crate::{
+    Contact, Element, Force, ForceKind, Joint, Number, Output, OutputKind, Parameter, Rational, Touching,
+};
 
 /// Reads all contacts: those on joint coordinates, whose inputs come after so many others, and those between bodies,
 /// which are elements.
@@ -17,7 +19,7 @@ pub(super) fn read(
     reader: &mut Reader<'_>,
     page: &Section<'_>,
     n_inputs: usize,
-) -> (Vec<Contact>, Vec<Element>) {
+) -> (Vec<Contact>, Vec<Element>, Vec<Touching>) {
     let written = page.get("contact").into_iter().flat_map(Item::elements);
     let mut counts = [0; 2];
     let owners = written.map(|item| {
@@ -28,10 +30,13 @@ pub(super) fn read(
     });
     let owners: Vec<Owner> = owners.collect();
     let owner = |index: usize| owners.get(index).copied().unwrap_or(Owner::Contact(index));
-    let (mut contacts, mut between): (Vec<Contact>, _) = (Vec::new(), Vec::new());
+    let (mut contacts, mut between, mut touching): (Vec<Contact>, _, _) =
+        (Vec::new(), Vec::new(), Vec::new());
     for (section, name) in tables::each(reader, page, "contact", owner) {
         if section.has("between") {
-            between.push(surfaces(reader, &section, page, name));
+            let (element, points) = surfaces(reader, &section, page, name);
+            between.push(element);
+            touching.extend(points);
         } else {
             contacts.push(contact(reader, &section, name, n_inputs + contacts.len()));
         }
@@ -40,28 +45,45 @@ pub(super) fn read(
         unlike_inputs(reader, index, contact);
         shared(reader, &contacts[..index], index, contact);
     }
-    (contacts, between)
+    (contacts, between, touching)
 }
 
 /// The keys of contacts on joint coordinates alone.
-const ON_JOINTS: [&str; 8] =
-    ["joint", "coordinate", "lower", "upper", "restitution", "friction", "static_friction", "radius"];
+const ON_JOINTS: [&str; 7] =
+    ["joint", "coordinate", "lower", "upper", "friction", "static_friction", "radius"];
 
-/// The keys of contacts between bodies alone.
-const BETWEEN: [&str; 5] = ["stiffness", "exponent", "damping", "stribeck_rate", "rate"];
+/// The keys of contacts between bodies that yield.
+const YIELDING: [&str; 5] = ["stiffness", "exponent", "damping", "stribeck_rate", "rate"];
 
 /// What acts between bodies; the model has it as outputs, formulas and forces.
-fn surfaces(reader: &mut Reader<'_>, section: &Section<'_>, page: &Section<'_>, name: String) -> Element {
+fn surfaces(
+    reader: &mut Reader<'_>,
+    section: &Section<'_>,
+    page: &Section<'_>,
+    name: String,
+) -> (Element, Vec<Touching>) {
+    let mut touching = Vec::new();
     let message = format!("{} is between bodies", section.title);
     for key in ON_JOINTS {
         section.refuse(reader, key, &message, "remove it: it is for contacts on a joint coordinate");
     }
     let mut numbers = Vec::new();
-    section.require(reader, "stiffness");
+    let is_rigid = section.has("restitution");
+    if is_rigid {
+        let message = format!("{} is rigid: it has a restitution", section.title);
+        for key in YIELDING {
+            section.refuse(reader, key, &message, "remove it, or `restitution`: surfaces yield or are rigid");
+        }
+    } else {
+        section.require(reader, "stiffness");
+        let message = format!("{} is not rigid: it has no restitution", section.title);
+        section.refuse(reader, "impact_law", &message, "remove it: nothing hits where surfaces yield");
+    }
     if ["static_friction_coefficient", "stribeck_rate", "rate"].iter().any(|key| section.has(key)) {
         section.require(reader, "friction_coefficient");
     }
-    for key in ["friction_coefficient", "static_friction_coefficient"].into_iter().chain(BETWEEN) {
+    const OF_BOTH: [&str; 3] = ["friction_coefficient", "static_friction_coefficient", "restitution"];
+    for key in OF_BOTH.into_iter().chain(YIELDING) {
         if section.has(key) {
             numbers.push((key, section.number(reader, key)));
         }
@@ -72,6 +94,14 @@ fn surfaces(reader: &mut Reader<'_>, section: &Section<'_>, page: &Section<'_>, 
     {
         let message = format!("the static coefficient of {} is below the kinetic one", section.title);
         item.wrong(reader, [message, "is less".to_owned(), "write one that is not less".to_owned()]);
+    }
+    let restitution = numbers.iter().find(|(key, _)| *key == "restitution");
+    if let (Some((_, Number::Exact(share))), Some(item)) = (restitution, section.get("restitution"))
+        && (share.is_negative() || *share > Rational::one())
+    {
+        let message = format!("the restitution of {} is not between 0 and 1", section.title);
+        let help = "write the part with which what hits rebounds: 0 for none, 1 for all";
+        item.wrong(reader, [message, "not such a part".to_owned(), help.to_owned()]);
     }
     if let Some(item) = section.get("between")
         && item.tables(reader).len() == item.elements().count()
@@ -90,11 +120,49 @@ fn surfaces(reader: &mut Reader<'_>, section: &Section<'_>, page: &Section<'_>, 
                     )
                 };
                 reader.remarks.extend(pairs.pass.iter().map(words));
+                if is_rigid {
+                    let one = |name| rigid(reader, section, name);
+                    touching.extend(pairs.touch.iter().flat_map(super::surfaces::touching).map(one));
+                }
             }
             Err(words) => item.wrong(reader, words),
         }
     }
-    Element { name, kind: "", table: CONTACT.name, numbers }
+    (Element { name, kind: "", table: CONTACT.name, numbers }, touching)
+}
+
+/// A point at which rigid surfaces touch; where its numbers are among the outputs is found out when these are read.
+fn rigid(reader: &mut Reader<'_>, section: &Section<'_>, name: String) -> Touching {
+    let forces = super::surfaces::forces(&name);
+    let input = |name: &String| reader.inputs.iter().position(|input| input == name).unwrap_or(0);
+    let inputs = forces.each_ref().map(input);
+    let kinetic = section.number(reader, "friction_coefficient");
+    let at_rest = section.given(reader, "static_friction_coefficient").unwrap_or_else(|| kinetic.clone());
+    let is_of_impulses =
+        section.get("impact_law").and_then(|item| item.text(reader)).is_some_and(|law| law == "poisson");
+    let restitution = section.number(reader, "restitution");
+    Touching { name, restitution, is_of_impulses, coefficients: [kinetic, at_rest], inputs, outputs: [0; 7] }
+}
+
+/// What the prelude has of each point, as [`Touching::outputs`].
+const OBSERVED: [&str; 7] = [
+    "clearance",
+    "parting",
+    "parting_rate",
+    "slips_along",
+    "slips_along_rate",
+    "slips_across",
+    "slips_across_rate",
+];
+
+/// Finds the numbers of rigid surfaces among the outputs.
+pub(super) fn observe(touching: &mut [Touching], outputs: &[Output]) {
+    for one in touching {
+        one.outputs = OBSERVED.map(|what| {
+            let name = format!("{}_{what}", one.name);
+            outputs.iter().position(|output| output.name == name).unwrap_or(0)
+        });
+    }
 }
 
 fn contact(reader: &mut Reader<'_>, section: &Section<'_>, name: String, input: usize) -> Contact {
@@ -103,7 +171,7 @@ fn contact(reader: &mut Reader<'_>, section: &Section<'_>, name: String, input: 
     section.require(reader, "joint");
     let on = references::coordinate(reader, section);
     let message = format!("{} is on a joint", section.title);
-    for key in BETWEEN {
+    for key in YIELDING.into_iter().chain(["impact_law"]) {
         section.refuse(reader, key, &message, "remove it: it is for contacts between bodies");
     }
     let ends = ["lower", "upper"].map(|key| section.given(reader, key));

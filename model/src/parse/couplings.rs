@@ -49,7 +49,7 @@ pub(super) fn couplers(reader: &mut Reader<'_>, opened: Opened<'_>) -> Vec<Coupl
 
 /// How a row may depend on what is seen.
 #[derive(Clone, Copy, PartialEq)]
-enum Level {
+pub(super) enum Level {
     /// On where everything is.
     Place,
     /// On how fast it moves.
@@ -58,7 +58,7 @@ enum Level {
     Other,
 }
 
-fn level(kinds: &[OutputKind], seen: Seen) -> Level {
+pub(super) fn level(kinds: &[OutputKind], seen: Seen) -> Level {
     match seen {
         Seen::Coordinate(_) => Level::Place,
         Seen::Rate(_) => Level::Rate,

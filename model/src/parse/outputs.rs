@@ -1,5 +1,6 @@
 //! Outputs: what is to be computed besides the motion.
 
+use super::couplings::{Level, level};
 use super::formulas::Inputs;
 use super::laws;
 use super::lookup::wrong_within;
@@ -18,7 +19,7 @@ pub(super) fn read<'t>(reader: &mut Reader<'_>, page: &Section<'t>) -> (Vec<Outp
     let mut pending = Pending::new();
     let outputs = sections.enumerate().map(|(index, (mut section, name))| {
         let kind = section.read_kind(reader, |_, _| None).map_or("energy", |kind| kind.word);
-        if kind == "formula" {
+        if ["formula", "rate"].contains(&kind) {
             let of = section.find(reader, "of").and_then(|item| Some((index, item, item.text(reader)?)));
             pending.extend(of);
         }
@@ -33,7 +34,7 @@ pub(super) fn read_formulas(reader: &mut Reader<'_>, pending: Pending<'_>, outpu
     let kinds = reader.outputs.clone();
     let refuse = |name: &str, seen: Seen| {
         let Seen::Output { output, .. } = seen else { return None };
-        kinds[output].formula().map(|_| {
+        matches!(kinds[output], OutputKind::Formula(_)).then(|| {
             [
                 format!("`{name}` is an output by formula"),
                 "not known yet".to_owned(),
@@ -41,9 +42,24 @@ pub(super) fn read_formulas(reader: &mut Reader<'_>, pending: Pending<'_>, outpu
             ]
         })
     };
+    let refuse_in_rate = |name: &str, seen: Seen| {
+        (seen != Seen::Time && level(&kinds, seen) == Level::Other).then(|| {
+            [
+                format!("an output of kind \"rate\" cannot depend on `{name}`"),
+                "neither a joint coordinate, its rate nor seen from a frame".to_owned(),
+                "write a formula of `t`, joint coordinates, their rates, and numbers of [[output]]s of kind \"relative\""
+                    .to_owned(),
+            ]
+        })
+    };
     for (index, item, text) in pending {
-        match laws::with_names(reader, &known, Inputs::Known, &refuse, |named| named.formula(text)) {
-            Ok(formula) => outputs[index].kind = OutputKind::Formula(formula),
+        let own = &mut outputs[index].kind;
+        let is_rate = matches!(own, OutputKind::Rate(_));
+        let refuse: &dyn Fn(&str, Seen) -> _ = if is_rate { &refuse_in_rate } else { &refuse };
+        match laws::with_names(reader, &known, Inputs::Known, refuse, |named| named.formula(text)) {
+            Ok(formula) => {
+                *own = if is_rate { OutputKind::Rate(formula) } else { OutputKind::Formula(formula) }
+            }
             Err(fault) => wrong_within(reader, item, text, fault),
         }
     }
@@ -65,6 +81,7 @@ fn output(reader: &mut Reader<'_>, (section, place): (&Section<'_>, usize), kind
         "power" => OutputKind::Power,
         "energy" => OutputKind::Energy,
         "formula" => OutputKind::Formula(Formula::seen("t", Seen::Time)),
+        "rate" => OutputKind::Rate(Formula::seen("t", Seen::Time)),
         "velocity" => OutputKind::Velocity(frame(reader, section)),
         "acceleration" => OutputKind::Acceleration(frame(reader, section)),
         "inertial" => OutputKind::Inertial(frame(reader, section)),

@@ -36,7 +36,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let taken: Vec<&str> = taken.chain(derived.iter().map(|p| p.name.as_str())).collect();
     lines::follow_inputs(reader, (&mut bodies, &mut drivers), &taken, (&mut inputs, &mut between));
     let n_inputs = inputs.len() + lines::n_inputs((&mut bodies, &mut drivers));
-    let (mut contacts, surfaces) = contacts::read(reader, &page, n_inputs);
+    let (mut contacts, surfaces, mut touching) = contacts::read(reader, &page, n_inputs);
     let taken = contacts.iter().map(|contact| &contact.name).chain(parameters.iter().map(|p| &p.name));
     let taken: Vec<&str> = taken.map(String::as_str).chain(parameters::OWN_FIELDS).collect();
     lines::add_inputs((&mut bodies, &mut drivers), &taken, (&mut inputs, &mut between));
@@ -47,6 +47,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
     let named = contacts.iter().map(|contact| Some(contact.name.clone()));
     reader.names.entry("force").or_default().extend(named);
     let (mut outputs, pending) = outputs::read(reader, &page);
+    contacts::observe(&mut touching, &outputs);
     contacts::loads(reader, &mut contacts, &joints, &mut outputs);
     let states = states::open(reader, &page, &mut outputs);
     reader.visible = seen::known(reader, &outputs);
@@ -82,6 +83,7 @@ pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Model {
         controllers,
         events,
         contacts,
+        touching,
         redundant,
         counts_work,
         functions,

@@ -41,6 +41,9 @@ pub(super) fn expanded<'t>(file: &Table<'t>) -> (Table<'t>, Vec<Range<usize>>) {
     for (keys, table) in elements {
         places.extend(table.values().map(Spanned::span));
         let Some(element) = Expansion::new(file, keys, table) else { continue };
+        if table.contains_key("restitution") {
+            element.add_inputs(&mut whole);
+        }
         let parts = names_of_parts(keys, element.kind).into_iter();
         let parts = parts
             .filter_map(|name| prelude.get_ref().get(name.as_str()))
@@ -111,6 +114,18 @@ impl<'a, 't> Expansion<'a, 't> {
             && !(kind.key("closed").is_some() && has("joint") && has("first"))
             && joint.is_none_or(|joint| expansion.joint(joint).is_some());
         is_whole.then_some(expansion)
+    }
+
+    /// The forces of surfaces that are rigid are inputs.
+    fn add_inputs(&self, whole: &mut Table<'t>) {
+        let inputs = whole
+            .entry(self.here(Cow::Borrowed("inputs")))
+            .or_insert_with(|| self.here(DeValue::Table(DeTable::new())));
+        let DeValue::Table(inputs) = inputs.get_mut() else { return };
+        let zero = DeValue::parse("0").expect("it is a number").into_inner();
+        for name in surfaces::touching(self.table).flat_map(|name| surfaces::forces(&name)) {
+            inputs.insert(self.here(Cow::Owned(name)), self.here(zero.clone()));
+        }
     }
 
     /// What it has of a part: none, one, or one for each two neighbours in a list.

@@ -13,7 +13,8 @@ type Value<'t> = Spanned<DeValue<'t>>;
 pub(super) type Words = [String; 3];
 
 /// The keys of the law, which pairs have from their contact.
-const LAW: [&str; 7] = [
+const LAW: [&str; 8] = [
+    "restitution",
     "stiffness",
     "exponent",
     "damping",
@@ -84,6 +85,18 @@ pub(super) fn pairs<'t>(file: &Table<'t>, contact: &Table<'t>) -> Result<Pairs<'
         }
     }
     Ok(Pairs { touch: pairs, pass })
+}
+
+/// The names of the points at which a pair may touch.
+pub(super) fn touching<'t>(pair: &Table<'t>) -> impl Iterator<Item = String> + use<'t> {
+    let text = |key: &str| pair.get(key).and_then(|value| value.get_ref().as_str()).unwrap_or_default();
+    let (name, count) = (text("name").to_owned(), text("number").parse().unwrap_or(0));
+    (1..=count).map(move |k: usize| format!("{name}_{k}"))
+}
+
+/// The names of the forces at a point: the push, and friction along two tangents.
+pub(super) fn forces(point: &str) -> [String; 3] {
+    ["push", "along", "across"].map(|force| format!("{point}_{force}"))
 }
 
 /// The shapes of both sides; nothing where the tables themselves are wrong, which is told elsewhere.

@@ -245,7 +245,7 @@ fn check_references(model: &Model) {
                 assert!(force < model.forces.len());
             }
             OutputKind::State { state } => assert!(state < model.states.len()),
-            OutputKind::Formula(_) | OutputKind::Energy | OutputKind::Power => {}
+            OutputKind::Formula(_) | OutputKind::Rate(_) | OutputKind::Energy | OutputKind::Power => {}
         }
     }
     for force in &model.forces {

@@ -30,6 +30,8 @@ pub(super) struct Feed<M: Mechanism> {
     /// Of contacts, the inputs that are their forces, and where the reactions of their friction are among the outputs.
     forces: Vec<usize>,
     reactions: Vec<Option<usize>>,
+    /// Of surfaces, where their numbers are among the outputs.
+    surfaces: Vec<Option<[usize; 7]>>,
 }
 
 /// What an input is until the next knot.
@@ -98,8 +100,9 @@ impl<L, M: Mechanism> Fed<L, M> {
         let feed = Feed {
             mechanism: RefCell::new(mechanism),
             pieces: RefCell::default(),
-            forces: touches.iter().map(|touch| touch.input).collect(),
-            reactions: touches.iter().map(|touch| touch.reaction).collect(),
+            forces: touches.iter().flat_map(Touch::inputs).copied().collect(),
+            reactions: touches.iter().flat_map(reactions).collect(),
+            surfaces: touches.iter().flat_map(surfaces).collect(),
         };
         // A motion is begun once.
         let _ = self.feed.set(feed);
@@ -146,8 +149,42 @@ impl<L: Ode<M, Scalar = M::Scalar>, M: Mechanism> Ode<M> for Fed<L, M> {
     }
 }
 
+/// Of each force of a contact the reaction that its friction grows with.
+fn reactions(touch: &Touch) -> Vec<Option<usize>> {
+    match touch {
+        Touch::Stop(stop) => vec![stop.reaction],
+        Touch::Surfaces(_) => vec![None; 3],
+    }
+}
+
+/// Of the first force of surfaces where the numbers of all three are.
+fn surfaces(touch: &Touch) -> Vec<Option<[usize; 7]>> {
+    match touch {
+        Touch::Stop(_) => vec![None],
+        Touch::Surfaces(surfaces) => vec![Some(surfaces.outputs), None, None],
+    }
+}
+
 impl<M: JointSpace<Joints: 'static> + 'static> Forced<M> for Fed<Joint, M> {
     const HAS_REACTIONS: bool = true;
+    const HAS_SURFACES: bool = true;
+
+    fn seen(&self, _: &M, t: M::Scalar, x: &M::Joints, forces: &[M::Scalar], out: &mut [[M::Scalar; 3]]) {
+        let Some(feed) = self.feed.get() else { return };
+        let mechanism = feed.under(t, forces);
+        let (mut y, mut outputs) = (mechanism.start(), mechanism.buffers().outputs);
+        mechanism.to_maximal(t, x, &mut y);
+        mechanism.outputs(t, &y, &mut outputs);
+        for (k, places) in feed.surfaces.iter().enumerate() {
+            if let (Some(places), Some([gap, along, across])) = (places, out.get_mut(k..k + 3)) {
+                let zero = M::Scalar::constant(0.0);
+                let [x, rate, second, slip, slip_rate, other, other_rate] =
+                    places.map(|place| outputs.as_ref()[place]);
+                (*gap, *along, *across) =
+                    ([x, rate, second], [zero, slip, slip_rate], [zero, other, other_rate]);
+            }
+        }
+    }
 
     fn rates(&self, mechanism: &M) -> Range<usize> {
         let layout = mechanism.joint_layout();

@@ -2,7 +2,7 @@ use super::*;
 use crate::motion::Element;
 use crate::{
     BodySample, Controller, Coordinates, Correction, End, Input, Integrator, JointSample, Kink, Levels, Line,
-    Seen, Stay, Touch, Watch, What, When, Wiring,
+    Seen, Stay, Stop, Touch, Watch, What, When, Wiring,
 };
 use crate::{Formula, Operation, Path};
 use gyro_sim::Elementary;
@@ -84,7 +84,7 @@ fn a_request_comes_back_bit_by_bit() {
                     stops: correct_every.is_some(),
                 }],
                 paths: vec![Path { inputs: [3, 1, 4, 2], rows: vec![AWKWARD[..2].try_into().unwrap(); 2] }],
-                contacts: vec![Touch {
+                contacts: vec![Touch::Stop(Stop {
                     on: (1, 0),
                     input: 2,
                     ends: [f64::NEG_INFINITY, AWKWARD[1]],
@@ -92,7 +92,7 @@ fn a_request_comes_back_bit_by_bit() {
                     levels: [0.0, AWKWARD[5]],
                     coefficients: [AWKWARD[1], AWKWARD[0]],
                     reaction: correct_every.map(|_| 7),
-                }],
+                })],
             },
             measure_for: correct_every.map(|every| 3.0 * every),
         };

@@ -33,7 +33,7 @@ pub struct Start {
     pub watches: Vec<Watch>,
     /// Kinks of laws: steps under error control end there, others that go over them are counted.
     pub kinks: Vec<Kink>,
-    /// Rigid stops and friction that sticks, at most [`Touch::MOST`].
+    /// Rigid stops and friction that sticks, and surfaces that touch.
     pub contacts: Vec<Touch>,
 }
 

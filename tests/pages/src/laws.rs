@@ -59,7 +59,7 @@ impl Words<'_> {
         if depth == 0 {
             return match self.dice.below(5) {
                 0 => self.dice.pick(&["0.3", "2", "1/3", "30 deg", "pi", "1e-3"]).to_owned(),
-                _ => self.names[self.dice.below(self.names.len())].clone(),
+                _ => self.name(),
             };
         }
         let x = self.formula(depth - 1);
@@ -69,6 +69,17 @@ impl Words<'_> {
         } else {
             self.dice.pick(&OF_ONE).replace('X', &x)
         }
+    }
+
+    /// One in which no function has numbers alone for operands.
+    pub fn of_names(&mut self) -> String {
+        let [x, y] = [(); 2].map(|()| self.name());
+        let of_two = self.dice.pick(&OF_TWO).replace('X', &x).replace('Y', &y);
+        if self.dice.once_in(2) { self.dice.pick(&OF_ONE).replace('X', &of_two) } else { of_two }
+    }
+
+    fn name(&mut self) -> String {
+        self.names[self.dice.below(self.names.len())].clone()
     }
 }
 

@@ -72,6 +72,7 @@ fn text(mut page: Page, seed: u64) -> String {
     page.bushings(seed);
     page.ready(seed);
     page.touching(seed);
+    page.rates(seed);
     page.read();
     page.text()
 }

@@ -1,6 +1,7 @@
-//! Outputs of two frames, and rows among their numbers.
+//! Outputs of two frames, rows among their numbers, and rates of formulas of these.
 
 use crate::dice::Dice;
+use crate::laws::Words;
 use crate::page::Page;
 
 impl Page {
@@ -15,6 +16,25 @@ impl Page {
             if !dice.once_in(4) {
                 self.row_of_pair(&mut dice, index);
             }
+        }
+    }
+
+    /// One or two rates of formulas, in a third of the model files.
+    pub fn rates(&mut self, seed: u64) {
+        let Some((mut dice, count)) = Dice::of_a_third(seed, 47) else { return };
+        let places = self.coordinates().into_iter().map(|on| self.shown(on));
+        let mut names: Vec<_> = places.flat_map(|place| [format!("{place} rate"), place]).collect();
+        for pair in ["p0", "p1"] {
+            if self.elements.contains(&format!("\"{pair}\"\nkind = \"relative\"")) {
+                names.extend(["x", "z", "xy", "zz", "vx", "vz", "wx", "wy"].map(|of| format!("{pair}.{of}")));
+            }
+        }
+        names.push("t".to_owned());
+        names.extend(self.inputs.iter().map(|(name, _)| name.clone()));
+        let mut words = Words { dice: &mut dice, names };
+        for index in 0..count {
+            let of = words.of_names();
+            self.elements += &format!("\n[[output]]\nname = \"rate{index}\"\nkind = \"rate\"\nof = {of:?}\n");
         }
     }
 

@@ -73,6 +73,7 @@ fn pages_have_everything() {
         "\"inertial\"",
         "\"reaction\"",
         "\"driver\"",
+        "\"rate\"",
         "\"energy\"",
         "\"power\"",
         "[parameters]",

@@ -109,7 +109,10 @@ impl<F: Field> Evaluation<'_, F> {
 
     /// A pose on its way.
     pub(super) fn moved(&self, pose: &Pose<F>, s: &Vector<F>, w: &Vector<F>) -> Pose<F> {
-        let r = from_fn(|k| Jet::moving(pose.r.0[k].value.clone(), s.0[k].value.clone()));
+        let r = from_fn(|k| Jet {
+            second: s.0[k].rate.clone(),
+            ..Jet::moving(pose.r.0[k].value.clone(), s.0[k].value.clone())
+        });
         let p = self.turning(&pose.p, w);
         Pose { r: Vector(r), a: self.scope.rotation(&p), p }
     }

@@ -2,6 +2,7 @@
 
 use super::formula;
 use super::jet::Jet;
+use super::pose::Path;
 use super::{Evaluation, linear::Vector};
 use crate::field::Field;
 use gyro_model::{ForceKind, JointCoordinate, Number, OutputKind, Seen};
@@ -100,6 +101,22 @@ impl<F: Field> Evaluation<'_, F> {
             seen => self.sight(seen),
         };
         self.read(text, &see).map(|value| value.value)
+    }
+
+    /// The derivative of a formula along the motion.
+    pub(super) fn formula_rate(&self, text: &str, accelerations: &[F]) -> Option<F> {
+        let moving = self.on_its_way(accelerations);
+        let see = |seen| match seen {
+            Seen::Time => Some(self.time(Path::Motion)),
+            Seen::Output { output, number } => {
+                let frames = self.textbook.model.outputs[output].kind.frames();
+                let [first, second] = frames else { return None };
+                let poses = [first, second].map(|frame| &moving.still[frame.body]);
+                moving.relative([first, second], poses)?.get(number).cloned()
+            }
+            seen => moving.sight(seen),
+        };
+        Some(self.read(text, &see)?.derivative(&self.scope.zero.value).value)
     }
 
     fn read(&self, text: &str, see: formula::See<'_, F>) -> Option<Jet<F>> {

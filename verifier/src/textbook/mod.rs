@@ -70,6 +70,7 @@ struct Block {
 /// The textbook's formulas at one point.
 ///
 /// Orders and sizes are those of [`Model::rows`], [`Model::coordinate_bodies`] and [`gyro_model::OutputKind::columns`].
+#[derive(Clone)]
 pub struct Evaluation<'a, F: Field> {
     textbook: &'a Textbook<'a>,
     scope: Scope<'a, F>,

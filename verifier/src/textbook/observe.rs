@@ -124,6 +124,7 @@ impl<F: Field> Evaluation<'_, F> {
             OutputKind::Formula(formula) => {
                 vec![self.formula_output(&formula.text, accelerations, lambda)?]
             }
+            OutputKind::Rate(formula) => vec![self.formula_rate(&formula.text, accelerations)?],
             OutputKind::State { state } => {
                 vec![self.scope.point.own_state(self.textbook.model, *state).clone()]
             }

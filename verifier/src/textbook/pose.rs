@@ -133,15 +133,33 @@ impl<F: Field> Evaluation<'_, F> {
         Pose { a: self.scope.rotation(&p), r, p }
     }
 
-    /// p on its way at a constant w': `ṗ = ½ G(p)ᵀ w'`, and so `p̈ = ½ G(ṗ)ᵀ w'` as G is linear.
+    /// p on its way at w', which may change: `ṗ = ½ G(p)ᵀ w'`, and so `p̈ = ½ G(ṗ)ᵀ w' + ½ G(p)ᵀ ẇ'` as G is linear.
     pub(super) fn turning(&self, p: &Euler<F>, w: &Vector<F>) -> Euler<F> {
         let rate = self.scope.euler_rate(p, w);
         let second = self.scope.euler_rate(&rate, w);
         from_fn(|k| Jet {
             value: p[k].value.clone(),
             rate: Some(rate[k].value.clone()),
-            second: Some(second[k].value.clone()),
+            second: Some(match &rate[k].rate {
+                Some(turned) => second[k].value.add(turned),
+                None => second[k].value.clone(),
+            }),
         })
+    }
+
+    /// The formulas of all bodies on their way, at accelerations `(s̈, ẇ')` of those with coordinates.
+    pub(super) fn on_its_way(&self, given: &[F]) -> Self {
+        let with_rate = |v: &Vector<F>, rate: &Vector<F>| {
+            Vector(from_fn(|k| Jet::moving(v.0[k].value.clone(), rate.0[k].value.clone())))
+        };
+        let one = |(body, Moving { pose, s, w }): (usize, &Moving<F>)| {
+            let acceleration = self.acceleration(body, given);
+            let (s, w) = (with_rate(s, &acceleration.s), with_rate(w, &acceleration.w));
+            Moving { pose: self.moved(pose, &s, &w), s, w }
+        };
+        let moving: Vec<_> = self.moving.iter().enumerate().map(one).collect();
+        let still = moving.iter().map(|moving| moving.pose.clone()).collect();
+        Self { moving, still, ..self.clone() }
     }
 
     /// (s, w') of the body in a moving_body.

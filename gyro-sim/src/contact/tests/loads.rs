@@ -92,6 +92,7 @@ fn friction_has_its_level_under_the_reactions_that_it_makes() {
                     Phase::Sticks => rate == 0.0 && force.abs() <= bound,
                     Phase::AtLower => rate == 0.0 && y[k] == -0.5 && force >= -bound,
                     Phase::AtUpper => rate == 0.0 && y[k] == 0.5 && force <= bound,
+                    Phase::Slides => false,
                 };
                 assert!(is_consistent, "case {case} at {}: {k} {phase:?} {y:?} {forces:?}", motion.time());
                 slipping += u32::from(matches!(phase, Phase::Up | Phase::Down));

@@ -1,0 +1,364 @@
+//! Surfaces that touch: impacts, what rests, and phases.
+
+use super::cones::{Bound, Cones};
+use super::equations::{Contacts, Forced, Local, bounds};
+use super::guards::size;
+use super::loads::{Acting, Jam};
+use super::resolve::{Hit, ROUNDING, UNMET};
+use super::small::{at, larger, not_below_rounding, spread};
+use super::{Error, Phase, Role};
+use crate::Real;
+use core::array::from_fn;
+
+/// Friction counts as that of what sticks up to this part of its bound.
+const WITHIN: f64 = 1.0 - 1e-9;
+/// The direction of slip is that of its velocity down to this part of the fastest.
+const VAGUE: f64 = 1e-9;
+/// Friction that is at its bound where nothing slips may be beyond it by this part.
+const LOOSE: f64 = 1e-3;
+/// What begins to slide has the direction of its beginning for this time, s.
+const SUDDEN: f64 = 1e-6;
+/// What a solution is off by times this may be nothing.
+const UNSURE: f64 = 100.0;
+/// So many contacts change their phase, each some times, until all are consistent.
+const REPAIRS: usize = 8;
+
+impl<D, T: Real, const N: usize> Contacts<D, T, N> {
+    /// The impulses of an impact, and the rates after it.
+    pub(super) fn struck(
+        &self,
+        local: &Local<T, N>,
+        hits: &[Option<Hit<T>>; N],
+    ) -> Result<([T; N], [T; N]), Jam> {
+        let zero = T::constant(0.0);
+        // Of impulses: compression to the end, then a part of its impulses again, or more where something else pushes.
+        let is_poisson = |k: usize| self.contacts[k].is_of_impulses;
+        let rebounds = |k: usize| hits[k].map_or(zero, |hit| if is_poisson(k) { zero } else { hit.rebound });
+        let least = [zero; N];
+        let mut impulses = self.collision(local, &local.rates, hits, (&rebounds, &least))?;
+        let mut after = along(local, &local.rates, &impulses);
+        let shares = |k: usize| match hits[k] {
+            Some(hit) if is_poisson(k) && hit.rebound > zero => self.contacts[k].restitution,
+            _ => zero,
+        };
+        if (0..N).any(|k| shares(k) > zero) {
+            let least = from_fn(|k| shares(k) * impulses[k]);
+            let again = self.collision(local, &after, hits, (&rebounds, &least))?;
+            after = along(local, &after, &again);
+            impulses = from_fn(|k| impulses[k] + again[k]);
+        }
+        Ok((impulses, after))
+    }
+
+    /// Impulses such that surfaces part at these rates at least; no less than these.
+    fn collision(
+        &self,
+        local: &Local<T, N>,
+        rates: &[T; N],
+        hits: &[Option<Hit<T>>; N],
+        (rebounds, least): (&dyn Fn(usize) -> T, &[T; N]),
+    ) -> Result<[T; N], Jam> {
+        let (zero, infinite) = (T::constant(0.0), T::constant(f64::INFINITY));
+        let bound = |k: usize| match (self.contacts[k].slip(), hits[k]) {
+            (Some((gap, _)), _) if hits.get(gap).is_some_and(Option::is_some) => {
+                Bound::Plane(self.contacts[k].coefficients[0])
+            }
+            (None, Some(hit)) if hit.outward > zero => Bound::Between([least[k], infinite]),
+            (None, Some(_)) => Bound::Between([-infinite, -least[k]]),
+            _ => Bound::Given,
+        };
+        let bias = from_fn(|k| rates[k] - hits[k].map_or(zero, |hit| hit.outward * rebounds(k)));
+        let cones = Cones { contacts: &self.contacts, compliance: &local.compliance, bounds: from_fn(bound) };
+        cones
+            .solved(&bias, *least)
+            .map(|(impulses, _)| impulses)
+            .map_err(|contact| Jam { contact, gain: 1.0 })
+    }
+
+    /// Takes from what is held the rates that it has, and from gaps what they are open or overlap, by impulses along
+    /// them.
+    pub(super) fn hold<M>(
+        &self,
+        model: &M,
+        (t, y): (T, &mut D::State),
+        held: &[bool; N],
+        scratch: &mut [D::State; 2],
+    ) where
+        D: Forced<M, Scalar = T>,
+    {
+        if !held.contains(&true) {
+            return;
+        }
+        let local = self.local(model, (t, y), held, &mut scratch[0]);
+        let places = self.places(model, (t, y));
+        let is_open = |k: usize| self.contacts[k].role == Role::Gap && held[k];
+        let gaps = from_fn(|k| if is_open(k) { -places[k][0] } else { T::constant(0.0) });
+        let moves = spread(&local.compliance, &gaps, held);
+        let stops = spread(&local.compliance, &local.rates.map(|rate| -rate), held);
+        let own = self.dynamics.rates(model);
+        // Positions change by the rates that these impulses would give, for one second.
+        let mut moved = y.clone();
+        let [before, after] = scratch;
+        self.push(model, (t, &mut moved), &moves, [before, after]);
+        let zero = [T::constant(0.0); N];
+        self.dynamics.forced(model, t, &moved, &zero, after);
+        self.dynamics.forced(model, t, y, &zero, before);
+        let work =
+            self.dynamics.work(model).and_then(|place| y.as_ref().get(place).copied().zip(Some(place)));
+        let changes = after.as_ref().iter().zip(before.as_ref()).map(|(after, before)| *after - *before);
+        for (place, change) in y.as_mut().iter_mut().zip(changes).take(own.start) {
+            *place = *place + change;
+        }
+        self.push(model, (t, y), &stops, [before, after]);
+        if let Some((work, place)) = work {
+            y.as_mut()[place] = work;
+        }
+        self.dynamics.normalise(model, y);
+    }
+
+    /// Has what slides go on in its present direction.
+    pub(super) fn turn<M>(&mut self, model: &M, (t, y): (T, &D::State))
+    where
+        D: Forced<M, Scalar = T>,
+    {
+        if self.phases.contains(&Phase::Slides) {
+            let rates = self.places(model, (t, y)).map(|[_, rate]| rate);
+            self.turn_to(&rates);
+        }
+    }
+
+    fn turn_to(&mut self, rates: &[T; N]) {
+        for k in 0..N {
+            let Some((gap, is_second)) = self.contacts[k].slip().filter(|_| self.phases[k] == Phase::Slides)
+            else {
+                continue;
+            };
+            let [along, across] = [gap + 1, gap + 2].map(|slip| at(rates, slip));
+            let speed = pair_size(rates, gap);
+            let vague = speed * T::constant(VAGUE);
+            self.vague[k] = larger(self.vague[k], vague);
+            if speed > self.vague[k] {
+                self.ways[k] = (if is_second { across } else { along }) / speed;
+            }
+        }
+    }
+
+    /// The phases that are consistent with a state in which these surfaces rest on each other, and those do not slip;
+    /// the bounds of some have just been reached.
+    ///
+    /// # Errors
+    /// [`Error::Jammed`] if none are.
+    pub(super) fn choose_surfaces<M>(
+        &mut self,
+        model: &M,
+        (t, y): (T, &D::State),
+        [rests, still, reached]: [&[bool; N]; 3],
+        scratch: &mut D::State,
+    ) -> Result<(), Error>
+    where
+        D: Forced<M, Scalar = T>,
+    {
+        let zero = T::constant(0.0);
+        let places = self.places(model, (t, y));
+        let rests_on = |k: usize| rests.get(k).is_some_and(|rests| *rests);
+        self.split = [zero; N];
+        self.phases = from_fn(|k| {
+            let (contact, [x, rate]) = (&self.contacts[k], places[k]);
+            let is_loaded = contact.slip().is_some_and(|(gap, _)| rests_on(gap)) && contact.acts();
+            match contact.role {
+                Role::Gap if rests[k] => Phase::AtLower,
+                Role::Slip { .. } if is_loaded && still[k] => Phase::Sticks,
+                Role::Slip { .. } if is_loaded => Phase::Slides,
+                Role::Gap | Role::Slip { .. } => Phase::Free,
+                Role::Coordinate if rate == zero && x <= contact.ends[0] => Phase::AtLower,
+                Role::Coordinate if rate == zero && x >= contact.ends[1] => Phase::AtUpper,
+                Role::Coordinate if !contact.rubs() => Phase::Free,
+                Role::Coordinate if rate > zero => Phase::Up,
+                Role::Coordinate if rate < zero => Phase::Down,
+                Role::Coordinate => Phase::Sticks,
+            }
+        });
+        let held = self.phases.map(Phase::is_held);
+        if !held.contains(&true) {
+            return Ok(());
+        }
+        self.turn_to(&places.map(|[_, rate]| rate));
+        let acting = from_fn(|k| match self.contacts[k].role {
+            Role::Gap => rests[k],
+            Role::Slip { .. } => self.phases[k] != Phase::Free,
+            Role::Coordinate => self.contacts[k].acts(),
+        });
+        let local = self.local(model, (t, y), &acting, scratch);
+        let loads = self.loads(model, (t, y), &acting);
+        let pulls = self.pulls(&local.rates);
+        let bound = |k: usize| match (&self.contacts[k], self.phases[k]) {
+            (contact, Phase::Sticks) if contact.slip().is_some() => Bound::Plane(contact.coefficients[1]),
+            (_, Phase::Slides) => Bound::Pulled(pulls[k]),
+            (contact, phase) if phase.is_held() => Bound::Between(bounds(contact.levels[1], phase)),
+            _ => Bound::Given,
+        };
+        let contacts = self.contacts;
+        let mut cones = Cones { contacts: &contacts, compliance: &local.compliance, bounds: from_fn(bound) };
+        let kinetic = self.kinetic_forces();
+        let jam = |contact| Jam { contact, gain: 1.0 };
+        let (mut forces, mut error) =
+            cones.solved(&local.bias, kinetic).map_err(|k| self.jammed(t, &jam(k)))?;
+        // What does not hold slides, by the kinetic coefficient.
+        let slides: [bool; N] = from_fn(|k| {
+            let (Bound::Plane(coefficient), Some((gap, _))) = (cones.bounds[k], self.contacts[k].slip())
+            else {
+                return false;
+            };
+            let bound = coefficient * at(&forces, gap);
+            bound > zero && pair_size(&forces, gap) > bound * T::constant(WITHIN)
+        });
+        if (0..N).any(|k| slides[k] && self.contacts[k].coefficients[0] < self.contacts[k].coefficients[1]) {
+            for k in (0..N).filter(|k| slides[*k]) {
+                cones.bounds[k] = Bound::Plane(self.contacts[k].coefficients[0]);
+            }
+            (forces, error) = cones.solved(&local.bias, kinetic).map_err(|k| self.jammed(t, &jam(k)))?;
+        }
+        self.weakest = larger(self.weakest, size(&forces) * not_below_rounding(ROUNDING));
+        self.slack = [self.weakest; N];
+        let fastest = (0..N).filter(|k| acting[*k]).fold(zero, |most, k| larger(most, local.bias[k].abs()));
+        self.largest = larger(self.largest, fastest);
+        let [rounding, unmet] = [ROUNDING, UNMET].map(|limit| not_below_rounding::<T>(limit) * self.largest);
+        let accelerations = local.accelerations(&forces);
+        for k in 0..N {
+            match (self.contacts[k].slip(), cones.bounds[k]) {
+                (None, Bound::Between([low, _]))
+                    if forces[k] <= low + self.weakest && accelerations[k] > rounding =>
+                {
+                    self.leave(k, Phase::Up);
+                }
+                (None, Bound::Between([_, high]))
+                    if forces[k] >= high - self.weakest && accelerations[k] < -rounding =>
+                {
+                    self.leave(k, Phase::Down);
+                }
+                (Some((gap, false)), Bound::Plane(_))
+                    if slides[k]
+                        && pair_size(&accelerations, gap) > larger(rounding, error * T::constant(UNSURE)) =>
+                {
+                    self.slide(gap, &forces);
+                }
+                _ => {}
+            }
+        }
+        let stuck: [bool; N] = from_fn(|k| slides[k] && self.phases[k] == Phase::Sticks);
+        for k in (0..N).filter(|k| stuck[*k]) {
+            match self.contacts[k].slip() {
+                Some((gap, false)) if reached[k] => self.slide(gap, &forces),
+                Some((gap, false)) => {
+                    self.slack[k] = T::constant(LOOSE) * self.contacts[k].coefficients[1] * at(&forces, gap);
+                }
+                _ => {}
+            }
+        }
+        self.split = forces;
+        // Exactly; and what is not consistent with its phase is given another one.
+        let mut worst = zero;
+        for _ in 0..REPAIRS * N {
+            let acting = self.acting(&local, loads.as_ref());
+            if let Some(jam) = acting.jam {
+                return Err(self.jammed(t, &jam));
+            }
+            let found = self.worst((&local, &acting), &places, [rests, still]);
+            worst = found.map_or(zero, |(_, _, violation)| violation);
+            match found {
+                Some((k, phase, violation)) if violation > rounding => match (phase, self.contacts[k].slip())
+                {
+                    (Phase::Slides, Some((gap, _))) => self.slide(gap, &acting.forces),
+                    (Phase::Sticks, Some((gap, _))) => {
+                        self.phases.iter_mut().skip(gap + 1).take(2).for_each(|to| *to = phase)
+                    }
+                    (Phase::AtLower | Phase::AtUpper | Phase::Sticks, _) => self.phases[k] = phase,
+                    _ => self.leave(k, phase),
+                },
+                _ => return Ok(()),
+            }
+        }
+        if worst <= unmet { Ok(()) } else { Err(self.jammed(t, &jam(0))) }
+    }
+
+    /// A coordinate or a gap is let go this way; surfaces that part rub no longer.
+    fn leave(&mut self, k: usize, way: Phase) {
+        self.phases[k] = if self.contacts[k].rubs() { way } else { Phase::Free };
+        if self.contacts[k].role == Role::Gap {
+            self.phases.iter_mut().skip(k + 1).take(2).for_each(|phase| *phase = Phase::Free);
+        }
+    }
+
+    /// Surfaces begin to slide where their friction does not want them to.
+    fn slide(&mut self, gap: usize, forces: &[T; N]) {
+        let size = pair_size(forces, gap);
+        for k in (gap + 1..gap + 3).filter(|k| *k < N) {
+            self.phases[k] = Phase::Slides;
+            self.ways[k] = -forces[k] / size;
+            self.vague[k] = larger(self.slowest, T::constant(SUDDEN) * self.largest);
+        }
+    }
+
+    /// The contact that is least consistent with its phase, by how much, as an acceleration, and the phase that is
+    /// another one.
+    fn worst(
+        &self,
+        (local, acting): (&Local<T, N>, &Acting<T, N>),
+        places: &[[T; 2]; N],
+        [rests, still]: [&[bool; N]; 2],
+    ) -> Option<(usize, Phase, T)> {
+        let (zero, forces) = (T::constant(0.0), &acting.forces);
+        let accelerations = local.accelerations(forces);
+        let mut worst: Option<(usize, Phase, T)> = None;
+        let mut note = |k: usize, phase: Phase, violation: T| {
+            if violation > worst.map_or(zero, |(.., most)| most) {
+                worst = Some((k, phase, violation));
+            }
+        };
+        for (k, contact) in self.contacts.iter().enumerate() {
+            let own = local.compliance[k][k].abs();
+            match (contact.slip(), self.phases[k]) {
+                (Some((gap, false)), Phase::Sticks) => {
+                    let beyond = pair_size(forces, gap) - acting.levels[k] - self.slack[k];
+                    note(k, Phase::Slides, beyond * own);
+                }
+                (Some((gap, false)), Phase::Slides) if still[k] => {
+                    let along = (gap + 1..gap + 3).filter(|slip| *slip < N);
+                    let along = along.fold(zero, |sum, slip| sum + accelerations[slip] * self.ways[slip]);
+                    note(k, Phase::Sticks, -along);
+                }
+                (Some(_), _) => {}
+                (None, phase) if phase.is_held() => {
+                    let [low, high] = bounds(acting.levels[k], phase);
+                    note(k, Phase::Up, (low - self.weakest - forces[k]) * own);
+                    note(k, Phase::Down, (forces[k] - high - self.weakest) * own);
+                }
+                (None, Phase::Free) if rests[k] => {
+                    let (is_upper, way) = match contact.role {
+                        Role::Coordinate => (places[k][0] >= contact.ends[1], accelerations[k]),
+                        _ => (false, accelerations[k]),
+                    };
+                    if is_upper { note(k, Phase::AtUpper, way) } else { note(k, Phase::AtLower, -way) }
+                }
+                (None, Phase::Up) if places[k][1] == zero => note(k, Phase::Sticks, -accelerations[k]),
+                (None, Phase::Down) if places[k][1] == zero => note(k, Phase::Sticks, accelerations[k]),
+                _ => {}
+            }
+        }
+        worst
+    }
+}
+
+/// The size of the components of two slips.
+fn pair_size<T: Real, const N: usize>(numbers: &[T; N], gap: usize) -> T {
+    let [along, across] = [gap + 1, gap + 2].map(|slip| at(numbers, slip));
+    (along * along + across * across).sqrt()
+}
+
+/// What rates are after impulses.
+fn along<T: Real, const N: usize>(local: &Local<T, N>, rates: &[T; N], impulses: &[T; N]) -> [T; N] {
+    from_fn(|i| {
+        let row = local.compliance[i].iter().zip(impulses);
+        row.fold(rates[i], |sum, (w, impulse)| sum + *w * *impulse)
+    })
+}
