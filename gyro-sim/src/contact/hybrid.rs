@@ -399,6 +399,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         self.failure = self.ledger.settle(equations, (model, t), &mut y, next, &mut self.scratch).err();
         self.solver.set_state(&y);
         self.solver.system_has_changed();
+        self.solver.forget_stiffness();
     }
 
     pub(super) fn guards<M>(&mut self, model: &M) -> Guards<T, N>

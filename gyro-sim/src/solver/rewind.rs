@@ -48,6 +48,11 @@ impl<D, S: Storage<T>, T: Real, A, C> Solver<D, S, T, A, C> {
         self.is_untouched = false;
     }
 
+    /// Steps so far say nothing of how stiff the equations are that hold from here on.
+    pub(crate) fn forget_stiffness(&mut self) {
+        self.stiff = 0;
+    }
+
     /// The length of the last step, s.
     pub(crate) fn last_step(&self) -> T {
         self.before.2
