@@ -73,10 +73,10 @@ where
     Guards(guards)
 }
 
-/// How far rounding may take a guard below zero while it does not go there.
-pub(super) fn noise<T: Real>(contact: &Contact<T>, positions: &[T], kind: usize, begin: T) -> T {
+/// How far rounding may take a guard below zero while it does not go there; positions are of this size.
+pub(super) fn noise<T: Real>(contact: &Contact<T>, size: T, kind: usize, begin: T) -> T {
     let end = match contact.role {
-        Role::Gap => size(positions),
+        Role::Gap => size,
         _ => contact.ends.get(kind).map_or(T::constant(0.0), |end| end.abs()),
     };
     let rounding = if end.is_finite() { T::constant(4.0) * T::EPSILON * end } else { T::constant(0.0) };
@@ -84,8 +84,8 @@ pub(super) fn noise<T: Real>(contact: &Contact<T>, positions: &[T], kind: usize,
 }
 
 /// The largest of some numbers.
-pub(super) fn size<T: Real>(y: &[T]) -> T {
-    y.iter().fold(T::constant(0.0), |most, x| if x.abs() > most { x.abs() } else { most })
+pub(super) fn size<'a, T: Real + 'a>(numbers: impl Iterator<Item = &'a T>) -> T {
+    numbers.fold(T::constant(0.0), |most, x| if x.abs() > most { x.abs() } else { most })
 }
 
 /// When a guard that is zero at a step's beginning, or beyond, is passed in it.

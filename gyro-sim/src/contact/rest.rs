@@ -218,7 +218,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             }
             (forces, error) = cones.solved(&local.bias, kinetic).map_err(|k| self.jammed(t, &jam(k)))?;
         }
-        self.weakest = larger(self.weakest, size(&forces) * not_below_rounding(ROUNDING));
+        self.weakest = larger(self.weakest, size(forces.iter()) * not_below_rounding(ROUNDING));
         self.slack = [self.weakest; N];
         let fastest = (0..N).filter(|k| acting[*k]).fold(zero, |most, k| larger(most, local.bias[k].abs()));
         self.largest = larger(self.largest, fastest);
@@ -291,10 +291,10 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
 
     /// Surfaces begin to slide where their friction does not want them to.
     fn slide(&mut self, gap: usize, forces: &[T; N]) {
-        let size = pair_size(forces, gap);
+        let (zero, size) = (T::constant(0.0), pair_size(forces, gap));
         for k in (gap + 1..gap + 3).filter(|k| *k < N) {
             self.phases[k] = Phase::Slides;
-            self.ways[k] = -forces[k] / size;
+            self.ways[k] = if size > zero { -forces[k] / size } else { zero };
             self.vague[k] = larger(self.slowest, T::constant(SUDDEN) * self.largest);
         }
     }

@@ -2,7 +2,7 @@
 
 use super::Error;
 use super::equations::{Contacts, Forced};
-use super::guards::{Guards, guards, noise, passed};
+use super::guards::{Guards, guards, noise, passed, size};
 use super::hybrid::Hybrid;
 use super::settle::Next;
 use crate::contract::Storage;
@@ -23,9 +23,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     {
         let zero = T::constant(0.0);
         let contacts = self.solver.dynamics().contacts;
-        let n = self.dynamics().rates(model).start;
-        let positions = self.solver.state().clone();
-        let positions = &positions.as_ref()[..n];
+        let size = size(self.solver.state().as_ref().iter().take(self.dynamics().rates(model).start));
         let solver = &mut self.solver;
         let [y, scratch] = &mut self.scratch;
         let mut values = |theta: T| {
@@ -40,7 +38,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         for (kind, contact) in (0..3).flat_map(|kind| (0..N).map(move |contact| (kind, contact))) {
             if begin[kind][contact] <= zero {
                 let value = |theta: T| Ok(values(theta)?.0[kind][contact]);
-                let noise = noise(&contacts[contact], positions, kind, begin[kind][contact]);
+                let noise = noise(&contacts[contact], size, kind, begin[kind][contact]);
                 if let Some(theta) = passed(value, noise)?
                     && first.as_ref().is_none_or(|next| theta < next.theta)
                 {
@@ -63,12 +61,10 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
             let Contacts { contacts, phases, .. } = *self.solver.dynamics();
             let Guards(guards) = self.guards(model);
             let zero = T::constant(0.0);
-            let positions = &self.solver.state().as_ref()[..self.dynamics().rates(model).start];
+            let size = size(self.solver.state().as_ref().iter().take(self.dynamics().rates(model).start));
             let is_passed = |kind: usize, k: usize| {
                 let is_own = (kind, k) == (next.kind, next.contact);
-                !is_own
-                    && !phases[k].is_held()
-                    && guards[kind][k] < -noise(&contacts[k], positions, kind, zero)
+                !is_own && !phases[k].is_held() && guards[kind][k] < -noise(&contacts[k], size, kind, zero)
             };
             let is_any = (0..2).any(|kind| (0..N).any(|k| is_passed(kind, k)));
             let h = self.solver.last_step();

@@ -104,7 +104,7 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         let zero = T::constant(0.0);
         let Guards(guards) = guards(equations, model, (t, y), &mut scratch[1]);
         let places = equations.places(model, (t, y));
-        let size = size(&y.as_ref()[..equations.dynamics.rates(model).start]);
+        let size = size(y.as_ref().iter().take(equations.dynamics.rates(model).start));
         let (contacts, phases) = (equations.contacts, equations.phases);
         let jumped = self.jumped.take();
         let length = next.map(|(_, h)| h).or(jumped.map(|(_, h)| h));
@@ -342,5 +342,5 @@ fn rounding<T: Real>(size: T) -> T {
 
 /// The fastest rate of a state, and of contacts.
 fn fastest<T: Real, const N: usize>(y: &[T], places: &[[T; 2]; N]) -> T {
-    places.iter().fold(size(y), |most, [_, rate]| larger(most, rate.abs()))
+    places.iter().fold(size(y.iter()), |most, [_, rate]| larger(most, rate.abs()))
 }

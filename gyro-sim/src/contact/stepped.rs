@@ -14,7 +14,8 @@ use crate::{Real, Rk4};
 ///
 /// The work of a step is bounded. It evaluates the accelerations four times, or 9 + 5 N times while something is held.
 /// Where something has happened, deciding what follows takes 4 + 4 N more at most, and 2ᴺ and 3ᴺ solutions of N
-/// equations.
+/// equations. Surfaces ask for more: what they rest on is projected after each step, and what follows an event is found
+/// by iteration, of a bounded number of rounds.
 ///
 /// Joints of loops are not closed: that is the caller's, by [`CloseLoops`](crate::CloseLoops).
 #[derive(Clone, Debug)]
