@@ -27,6 +27,7 @@ impl Page {
         for index in 0..count {
             let Some(ends) = self.two_frames(&mut dice) else { continue };
             let strengths = strengths(&mut dice);
+            let ends = if has_angles(&strengths) { turned(ends) } else { ends };
             self.elements +=
                 &format!("\n[[force]]\nname = \"b{index}\"\nkind = \"bushing\"\n{ends}{strengths}");
             if dice.once_in(2) {
@@ -63,6 +64,16 @@ fn frame(dice: &mut Dice) -> String {
         keys += &format!(", orientation = {}", list(&p));
     }
     keys
+}
+
+fn has_angles(strengths: &str) -> bool {
+    ["angle", "tors", "torque"].iter().any(|word| strengths.contains(word))
+}
+
+/// Two frames that are turned against each other, unless they are: joints along axes may hold them at 90 degrees, where
+/// angles between them have no value.
+fn turned(ends: String) -> String {
+    if ends.contains("orientation") { ends } else { ends.replacen(" }", ", orientation = [3, 1, -2, 0.5] }", 1) }
 }
 
 /// Some of its keys, at least one.
