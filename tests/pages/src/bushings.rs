@@ -73,7 +73,11 @@ fn has_angles(strengths: &str) -> bool {
 /// Two frames that are turned against each other, unless they are: joints along axes may hold them at 90 degrees, where
 /// angles between them have no value.
 fn turned(ends: String) -> String {
-    if ends.contains("orientation") { ends } else { ends.replacen(" }", ", orientation = [3, 1, -2, 0.5] }", 1) }
+    if ends.contains("orientation") {
+        ends
+    } else {
+        ends.replacen(" }", ", orientation = [3, 1, -2, 0.5] }", 1)
+    }
 }
 
 /// Some of its keys, at least one.

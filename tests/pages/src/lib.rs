@@ -24,11 +24,14 @@ mod loops;
 mod page;
 mod pairs;
 mod ready;
+mod scenes;
 mod touching;
 mod vector;
 
 use dice::Dice;
 use page::Page;
+
+pub use scenes::scene;
 
 /// The model file of a seed, always the same: some numbers are written as results of arithmetic.
 pub fn page(seed: u64) -> String {
