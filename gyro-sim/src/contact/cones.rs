@@ -7,9 +7,8 @@
 //! method of Gauss and Seidel), and then all together by Newton's method for the projections that say the same.
 
 use super::Contact;
-use super::small::{at, larger};
+use super::small::{at, larger, plus_product};
 use crate::Real;
-use core::array::from_fn;
 
 /// What a contact's force may be.
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +85,7 @@ impl<T: Real, const N: usize> Cones<'_, T, N> {
     }
 
     fn rates(&self, bias: &[T; N], forces: &[T; N]) -> [T; N] {
-        from_fn(|i| self.compliance[i].iter().zip(forces).fold(bias[i], |sum, (w, force)| sum + *w * *force))
+        plus_product(bias, self.compliance, forces)
     }
 
     /// One contact after the other, some times; forces cost so much.

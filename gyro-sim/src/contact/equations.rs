@@ -1,7 +1,7 @@
 //! Equations of motion with contacts in their phases.
 
 use super::loads::{Acting, Growth, Jam, Loads, size};
-use super::small::{at, set, solve, spread};
+use super::small::{at, plus_product, set, solve, spread};
 use super::{Contact, Phase, Role};
 use crate::{Clearance, Correction, Error, Ode, Real};
 use core::array::from_fn;
@@ -87,8 +87,10 @@ pub struct Contacts<D, T, const N: usize> {
     /// By how much friction of surfaces that stick may be beyond its bound: more where it is at its bound while nothing
     /// slips, as between bodies that slide down together.
     pub(super) slack: [T; N],
-    /// Slower than this nothing slips, m/s; and smaller than that no force counts, N.
+    /// Slower than this nothing slips, m/s; what sticking would hold is let slip by no less than that, m/s; and no force
+    /// counts that is smaller than the last, N.
     pub(super) slowest: T,
+    pub(super) creep: T,
     pub(super) weakest: T,
     /// Friction that may jam where the equations were evaluated.
     pub(super) jam: Cell<Option<Jam>>,
@@ -110,7 +112,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
     pub(super) fn new(dynamics: D, contacts: [Contact<T>; N]) -> Self {
         let (phases, zero) = ([Phase::Free; N], T::constant(0.0));
         let [ways, vague, split, slack] = [[zero; N]; 4];
-        let [largest, slowest, weakest] = [zero; 3];
+        let [largest, slowest, creep, weakest] = [zero; 4];
         Self {
             dynamics,
             contacts,
@@ -121,6 +123,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             split,
             slack,
             slowest,
+            creep,
             weakest,
             jam: Cell::new(None),
         }
@@ -257,7 +260,13 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
     pub(super) fn acting(&self, local: &Local<T, N>, loads: Option<&Loads<T, N>>) -> Acting<T, N> {
         let held = self.phases.map(Phase::is_held);
         let pulls = self.pulls(&local.rates);
-        let compliance = self.with_friction(&local.compliance, &pulls);
+        let with_friction;
+        let compliance = if self.phases.contains(&Phase::Slides) {
+            with_friction = self.with_friction(&local.compliance, &pulls);
+            &with_friction
+        } else {
+            &local.compliance
+        };
         let mut forces = from_fn(|k| if held[k] { self.split[k] } else { T::constant(0.0) });
         for (force, kinetic) in forces.iter_mut().zip(self.kinetic_forces()) {
             *force = *force + kinetic;
@@ -266,7 +275,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         let right = local.accelerations(&forces).map(|a| -a);
         let solve =
             if self.contacts.iter().any(|contact| contact.role == Role::Gap) { spread } else { solve };
-        let change = solve(&compliance, &right, &held);
+        let change = solve(compliance, &right, &held);
         forces = from_fn(|k| if held[k] { forces[k] + change[k] } else { forces[k] });
         self.rub(&mut forces, &pulls);
         let levels = self.levels(&forces);
@@ -281,7 +290,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             let mut response = [zero; N];
             if grows[j] > zero {
                 let way = if self.phases[j] == Phase::Up { -one } else { one };
-                response = solve(&compliance, &from_fn(|i| -way * local.compliance[i][j]), &held);
+                response = solve(compliance, &from_fn(|i| -way * local.compliance[i][j]), &held);
                 response[j] = way;
                 self.rub(&mut response, &pulls);
             }
@@ -324,12 +333,8 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             let (slip, was) = (pair.map(|slip| at(rates, slip)), pair.map(|slip| at(&self.ways, slip)));
             let [along, across] = from_fn(|i| slip[i] + self.vague[k] * was[i]);
             let speed = (along * along + across * across).sqrt();
-            // Beyond the end of sliding, which steps may reach before it is found, friction is what it was.
-            let is_beyond = slip[0] * was[0] + slip[1] * was[1] < zero;
-            let way = match speed > zero && !is_beyond {
-                true => (if is_second { across } else { along }) / speed,
-                false => self.ways[k],
-            };
+            let way =
+                if speed > zero { (if is_second { across } else { along }) / speed } else { self.ways[k] };
             -contact.coefficients[0] * way
         })
     }
@@ -387,9 +392,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
 impl<T: Real, const N: usize> Local<T, N> {
     /// The accelerations of the coordinates under these forces.
     pub(super) fn accelerations(&self, forces: &[T; N]) -> [T; N] {
-        from_fn(|i| {
-            self.compliance[i].iter().zip(forces).fold(self.bias[i], |sum, (w, force)| sum + *w * *force)
-        })
+        plus_product(&self.bias, &self.compliance, forces)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::equations::{Contacts, Forced, Kept};
 use super::guards::{Guards, guards};
-use super::settle::{Change, Ledger, Next, Record};
+use super::settle::{Change, Ledger, Next, Record, rounding};
 use super::small::at;
 use super::{Contact, Error, Phase, Role};
 use crate::contract::Storage;
@@ -226,12 +226,15 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         let h = self.solver.last_step();
         let Some(next) = self.find(model)? else {
             self.ledger.stalled = 0;
-            self.turn(model);
-            return Ok(false);
+            let creeps = self.turn(model);
+            let next = |contact| Next { theta: T::constant(1.0), kind: 2, contact };
+            self.pending = creeps.map(|contact| Pending::Event(next(contact), h));
+            return Ok(creeps.is_some());
         };
         self.end_at(model, h, &next)?;
         let next = self.before(model, next)?;
-        self.ledger.stalled = if next.theta > T::constant(0.0) { 0 } else { self.ledger.stalled + 1 };
+        let is_step = next.theta > T::constant(0.0) && self.solver.last_step() > rounding(self.mark.time());
+        self.ledger.stalled = if is_step { 0 } else { self.ledger.stalled + 1 };
         if self.ledger.stalled > MOST_STALLED {
             let t = self.mark.time().to_f64();
             return Err(crate::Error::StepTooShort { t, step: 0.0, index: 0 }.into());
@@ -380,13 +383,19 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         }
     }
 
-    /// Has surfaces that slide go on in the direction that they have now.
-    fn turn<M>(&mut self, model: &M)
+    /// Has surfaces that slide go on in the direction that they have now; returns what creeps. As surfaces come to rest
+    /// the direction turns ever faster, for ever shorter: that is nothing stiff.
+    fn turn<M>(&mut self, model: &M) -> Option<usize>
     where
         D: Forced<M, Scalar = T, State = S>,
     {
         let (t, y) = (self.solver.time(), self.solver.state().clone());
-        self.solver.dynamics_mut().turn(model, (t, &y));
+        let equations = self.solver.dynamics_mut();
+        let creeps = equations.turn(model, (t, &y));
+        if equations.phases.contains(&Phase::Slides) {
+            self.solver.forget_stiffness();
+        }
+        creeps
     }
 
     /// Decides what happens at the end of the last step.

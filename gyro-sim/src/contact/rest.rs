@@ -5,7 +5,7 @@ use super::equations::{Contacts, Forced, Local, bounds};
 use super::guards::size;
 use super::loads::{Acting, Jam};
 use super::resolve::{Hit, ROUNDING, UNMET};
-use super::small::{at, larger, not_below_rounding, spread};
+use super::small::{at, larger, not_below_rounding, plus_product, spread};
 use super::{Error, Phase, Role};
 use crate::Real;
 use core::array::from_fn;
@@ -36,7 +36,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         let rebounds = |k: usize| hits[k].map_or(zero, |hit| if is_poisson(k) { zero } else { hit.rebound });
         let least = [zero; N];
         let mut impulses = self.collision(local, &local.rates, hits, (&rebounds, &least))?;
-        let mut after = along(local, &local.rates, &impulses);
+        let mut after = plus_product(&local.rates, &local.compliance, &impulses);
         let shares = |k: usize| match hits[k] {
             Some(hit) if is_poisson(k) && hit.rebound > zero => self.contacts[k].restitution,
             _ => zero,
@@ -44,7 +44,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         if (0..N).any(|k| shares(k) > zero) {
             let least = from_fn(|k| shares(k) * impulses[k]);
             let again = self.collision(local, &after, hits, (&rebounds, &least))?;
-            after = along(local, &after, &again);
+            after = plus_product(&after, &local.compliance, &again);
             impulses = from_fn(|k| impulses[k] + again[k]);
         }
         Ok((impulses, after))
@@ -116,15 +116,24 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         self.dynamics.normalise(model, y);
     }
 
-    /// Has what slides go on in its present direction.
-    pub(super) fn turn<M>(&mut self, model: &M, (t, y): (T, &D::State))
+    /// Has what slides go on in its present direction; returns the first contact that creeps.
+    pub(super) fn turn<M>(&mut self, model: &M, (t, y): (T, &D::State)) -> Option<usize>
     where
         D: Forced<M, Scalar = T>,
     {
-        if self.phases.contains(&Phase::Slides) {
-            let rates = self.places(model, (t, y)).map(|[_, rate]| rate);
-            self.turn_to(&rates);
+        if !self.phases.contains(&Phase::Slides) {
+            return None;
         }
+        let rates = self.places(model, (t, y)).map(|[_, rate]| rate);
+        self.turn_to(&rates);
+        (0..N).find(|&k| {
+            let slip = self.contacts[k].slip().filter(|_| self.phases[k] == Phase::Slides);
+            slip.filter(|(_, is_second)| !is_second).is_some_and(|(gap, _)| {
+                // What does not move at all is held by other points.
+                let speed = pair_size(&rates, gap);
+                self.slowest + self.slowest < speed && speed < self.creep
+            })
+        })
     }
 
     fn turn_to(&mut self, rates: &[T; N]) {
@@ -227,12 +236,12 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         for k in 0..N {
             match (self.contacts[k].slip(), cones.bounds[k]) {
                 (None, Bound::Between([low, _]))
-                    if forces[k] <= low + self.weakest && accelerations[k] > rounding =>
+                    if forces[k] <= low + self.weakest && (reached[k] || accelerations[k] > rounding) =>
                 {
                     self.leave(k, Phase::Up);
                 }
                 (None, Bound::Between([_, high]))
-                    if forces[k] >= high - self.weakest && accelerations[k] < -rounding =>
+                    if forces[k] >= high - self.weakest && (reached[k] || accelerations[k] < -rounding) =>
                 {
                     self.leave(k, Phase::Down);
                 }
@@ -353,12 +362,4 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
 fn pair_size<T: Real, const N: usize>(numbers: &[T; N], gap: usize) -> T {
     let [along, across] = [gap + 1, gap + 2].map(|slip| at(numbers, slip));
     (along * along + across * across).sqrt()
-}
-
-/// What rates are after impulses.
-fn along<T: Real, const N: usize>(local: &Local<T, N>, rates: &[T; N], impulses: &[T; N]) -> [T; N] {
-    from_fn(|i| {
-        let row = local.compliance[i].iter().zip(impulses);
-        row.fold(rates[i], |sum, (w, impulse)| sum + *w * *impulse)
-    })
 }

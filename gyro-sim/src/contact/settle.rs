@@ -9,6 +9,12 @@ use crate::Real;
 
 /// A rebound slower than this part of the fastest impact is none.
 const SLOWEST: f64 = 1e-12;
+/// After so many events without a step between them nothing is held that does not stay.
+const PATIENCE: u32 = 8;
+/// What slips by less than this part of the fastest rate is tried to be held.
+const CREEP: f64 = 1e-8;
+/// What is solved of impacts is off by this much more than by rounding.
+const SOLVED: f64 = 1e3;
 
 /// What contacts have done so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,6 +148,7 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         let chosen = if equations.has_surfaces::<M>() {
             let fastest = fastest(y.as_ref(), &places) + length.map_or(zero, |h| equations.largest * h);
             equations.slowest = larger(equations.slowest, rounding(fastest));
+            equations.creep = larger(equations.slowest, T::constant(CREEP) * fastest);
             self.touch(equations, (model, t), y, (&hits, [&caught, &reached], next.is_none()), scratch)
         } else {
             self.collide(equations, (model, t), y, &hits, scratch);
@@ -174,7 +181,10 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         let contacts = equations.contacts;
         let mut impulses = [zero; N];
         let rates = equations.places(model, (t, y)).map(|[_, rate]| rate);
-        if (0..N).any(|k| hits[k].is_some_and(|(hit, _)| hit.outward * rates[k] < zero)) {
+        // What is solved is off by some more rounding.
+        let slowest = equations.slowest;
+        let solved = T::constant(SOLVED) * slowest;
+        if (0..N).any(|k| hits[k].is_some_and(|(hit, _)| hit.outward * rates[k] < -slowest)) {
             let meets = |k: usize| contacts.get(k).is_some_and(|_| hits[k].is_some());
             let chosen = core::array::from_fn(|k| match contacts[k].slip() {
                 Some((gap, _)) => contacts[k].acts() && meets(gap),
@@ -184,6 +194,7 @@ impl<T: Real, const N: usize> Ledger<T, N> {
             let outcome = equations
                 .struck(&local, &hits.map(|hit| hit.map(|(hit, _)| hit)))
                 .map_err(|jam| equations.jammed(t, &jam))?;
+
             self.record.lost = self.record.lost - work(&outcome, &local.rates);
             let met = (0..N).filter(|k| chosen[*k]).map(|k| local.bias[k].abs());
             equations.largest = met.fold(equations.largest, larger);
@@ -192,12 +203,13 @@ impl<T: Real, const N: usize> Ledger<T, N> {
             impulses = outcome.0;
         }
         let places = equations.places(model, (t, y));
-        let slowest = equations.slowest;
         let mut rests = [false; N];
         for (k, (contact, hit)) in contacts.iter().zip(hits).enumerate() {
-            let Some((Hit { outward, rebound }, is_upper)) = *hit else { continue };
+            let Some((Hit { outward, .. }, is_upper)) = *hit else { continue };
             let (push, rate) = (outward * impulses[k], outward * places[k][1]);
-            rests[k] = rebound <= zero && (push > zero || rate.abs() <= slowest);
+            // What leaves again and again, as at the edge of a face, is let go.
+            let is_gone = self.stalled > PATIENCE && reached[k] && contact.role == Role::Gap;
+            rests[k] = !is_gone && rate.abs() <= if push > zero { solved } else { slowest };
             if contact.role == Role::Coordinate && (rests[k] || rate < zero) {
                 set(y.as_mut(), contact.rate, zero);
                 set(y.as_mut(), contact.coordinate, contact.ends[usize::from(is_upper)]);
@@ -209,8 +221,8 @@ impl<T: Real, const N: usize> Ledger<T, N> {
                     [gap + 1, gap + 2].map(|slip| places.get(slip).map_or(zero, |place| place[1]));
                 let speed = (along * along + across * across).sqrt();
                 let is_caught = caught.get(gap + 1).is_some_and(|caught| *caught);
-                let is_slow =
-                    speed <= slowest + slowest || (is_caught && (is_late || speed <= equations.vague[k]));
+                let is_slow = speed <= slowest + slowest
+                    || (is_caught && (is_late || speed <= larger(equations.vague[k], equations.creep)));
                 rests.get(gap).is_some_and(|rests| *rests) && is_slow
             })
         });
@@ -336,7 +348,7 @@ fn is_as_good_as_reached<T: Real>(phase: Phase, [place, rate]: [T; 2], gap: T, h
 }
 
 /// Some roundings of a number of this size.
-fn rounding<T: Real>(size: T) -> T {
+pub(super) fn rounding<T: Real>(size: T) -> T {
     T::constant(64.0) * T::EPSILON * size
 }
 

@@ -35,6 +35,16 @@ pub(super) fn set<T>(y: &mut [T], index: usize, value: T) {
     }
 }
 
+/// `b + W f` for forces of which most are zero.
+pub(super) fn plus_product<T: Real, const N: usize>(b: &[T; N], matrix: &[[T; N]; N], f: &[T; N]) -> [T; N] {
+    let (mut places, mut n) = ([0; N], 0);
+    for k in (0..N).filter(|k| f[*k] != T::constant(0.0)) {
+        set(&mut places, n, k);
+        n += 1;
+    }
+    core::array::from_fn(|i| places.iter().take(n).fold(b[i], |sum, &k| sum + at(&matrix[i], k) * at(f, k)))
+}
+
 /// The same where W is of surfaces that touch at more points than carry: that solution is approached of which no part
 /// is large. A little is added to the diagonal, and taken back by iteration.
 pub(super) fn spread<T: Real, const N: usize>(
@@ -43,18 +53,14 @@ pub(super) fn spread<T: Real, const N: usize>(
     chosen: &[bool; N],
 ) -> [T; N] {
     let zero = T::constant(0.0);
-    let mut more = *matrix;
-    for (k, row) in more.iter_mut().enumerate() {
-        row[k] = row[k] + T::constant(EVENLY) * row[k].abs();
-    }
+    let factors = Factors::new(matrix, chosen, T::constant(EVENLY));
     let (mut found, mut rest, mut last) = ([zero; N], *right, T::constant(f64::INFINITY));
     for _ in 0..ITERATIONS {
-        let change = solve(&more, &rest, chosen);
+        let change = factors.solve(&rest);
         let next: [T; N] = core::array::from_fn(|k| found[k] + change[k]);
-        let left: [T; N] = core::array::from_fn(|i| {
-            (0..N).filter(|k| chosen[*k]).fold(right[i], |sum, k| sum - matrix[i][k] * next[k])
-        });
-        let size = (0..N).filter(|k| chosen[*k]).fold(zero, |most, k| larger(most, left[k].abs()));
+        let product = plus_product(&[zero; N], matrix, &next);
+        let left: [T; N] = core::array::from_fn(|i| if chosen[i] { right[i] - product[i] } else { zero });
+        let size = left.iter().fold(zero, |most, left| larger(most, left.abs()));
         if size >= last {
             break;
         }
@@ -64,46 +70,92 @@ pub(super) fn spread<T: Real, const N: usize>(
 }
 
 /// Solves `W x = b` for the unknowns that are chosen, W being symmetric and positive semidefinite; the others, and
-/// those that depend on chosen ones, are zero. By elimination with the largest pivots on the diagonal.
+/// those that depend on chosen ones, are zero.
 pub(super) fn solve<T: Real, const N: usize>(
     matrix: &[[T; N]; N],
     right: &[T; N],
     chosen: &[bool; N],
 ) -> [T; N] {
-    let (zero, dependent) = (T::constant(0.0), not_below_rounding(DEPENDENT));
-    let (mut w, mut x) = (*matrix, *right);
-    let mut order = [0; N];
-    let mut n = 0;
-    let mut is_left = *chosen;
-    loop {
-        let mut best: Option<(usize, T)> = None;
-        for k in (0..N).filter(|k| is_left[*k]) {
-            let share = w[k][k] / matrix[k][k];
-            if share > dependent && best.is_none_or(|(_, largest)| share > largest) {
-                best = Some((k, share));
+    Factors::new(matrix, chosen, T::constant(0.0)).solve(right)
+}
+
+/// What elimination with the largest pivots on the diagonal makes of a matrix: factors below these, in the order of the
+/// pivots, and what is left above.
+struct Factors<T, const N: usize> {
+    w: [[T; N]; N],
+    order: [usize; N],
+    n: usize,
+}
+
+impl<T: Real, const N: usize> Factors<T, N> {
+    /// Of the rows and columns that are chosen, the diagonal made larger by this part of it.
+    fn new(matrix: &[[T; N]; N], chosen: &[bool; N], more: T) -> Self {
+        let (zero, dependent) = (T::constant(0.0), not_below_rounding::<T>(DEPENDENT));
+        let (mut left, mut n_left) = ([0; N], 0);
+        for k in (0..N).filter(|k| chosen[*k]) {
+            set(&mut left, n_left, k);
+            n_left += 1;
+        }
+        let mut w = [[zero; N]; N];
+        for &row in left.iter().take(n_left).filter(|row| **row < N) {
+            for &column in left.iter().take(n_left).filter(|column| **column < N) {
+                w[row][column] = matrix[row][column];
+            }
+            w[row][row] = w[row][row] + more * w[row][row].abs();
+        }
+        let own: [T; N] = core::array::from_fn(|k| w[k][k]);
+        let (mut order, mut n) = ([0; N], 0);
+        while n < n_left {
+            let mut best: Option<(usize, T)> = None;
+            for (place, &k) in left.iter().enumerate().take(n_left).skip(n).filter(|(_, k)| **k < N) {
+                let share = w[k][k] / own[k];
+                if share > dependent && best.is_none_or(|(_, largest)| share > largest) {
+                    best = Some((place, share));
+                }
+            }
+            // Indices that have been kept are compared with N, so that the compiler knows them to be within bounds.
+            let Some((place, pivot)) =
+                best.and_then(|(place, _)| left.get(place).map(|pivot| (place, *pivot)))
+            else {
+                break;
+            };
+            if pivot >= N {
+                break;
+            }
+            let mut moved = pivot;
+            for slot in left.iter_mut().take(place + 1).skip(n) {
+                moved = core::mem::replace(slot, moved);
+            }
+            set(&mut order, n, pivot);
+            n += 1;
+            let pivot_row = w[pivot];
+            for &row in left.iter().take(n_left).skip(n).filter(|row| **row < N) {
+                let factor = w[row][pivot] / pivot_row[pivot];
+                for &column in left.iter().take(n_left).skip(n).filter(|column| **column < N) {
+                    w[row][column] = w[row][column] - factor * pivot_row[column];
+                }
+                w[row][pivot] = factor;
             }
         }
-        // Indices that have been kept are compared with N, so that the compiler knows them to be within bounds.
-        let Some((pivot, _)) = best.filter(|(pivot, _)| *pivot < N) else { break };
-        is_left[pivot] = false;
-        set(&mut order, n, pivot);
-        n += 1;
-        for row in (0..N).filter(|row| is_left[*row]) {
-            let factor = w[row][pivot] / w[pivot][pivot];
-            for column in (0..N).filter(|column| is_left[*column]) {
-                w[row][column] = w[row][column] - factor * w[pivot][column];
+        Self { w, order, n }
+    }
+
+    fn solve(&self, right: &[T; N]) -> [T; N] {
+        let mut x = *right;
+        let order = || self.order.iter().take(self.n).enumerate().filter(|(_, k)| **k < N);
+        for (place, &row) in order() {
+            let earlier = self.order.iter().take(place).filter(|k| **k < N);
+            x[row] = earlier.fold(x[row], |x_row, &k| x_row - self.w[row][k] * x[k]);
+        }
+        let mut solution = [T::constant(0.0); N];
+        for k in (0..N).rev().filter(|k| *k < self.n) {
+            let row = self.order[k];
+            if row < N {
+                let later = self.order.iter().take(self.n).skip(k + 1).filter(|i| **i < N);
+                let known = later.fold(x[row], |sum, &i| sum - self.w[row][i] * solution[i]);
+                solution[row] = known / self.w[row][row];
             }
-            x[row] = x[row] - factor * x[pivot];
         }
+        solution
     }
-    let mut solution = [zero; N];
-    for k in (0..N).rev().filter(|k| *k < n) {
-        let row = order[k];
-        if row < N {
-            let later = order.iter().take(n).skip(k + 1).filter(|i| **i < N);
-            let known = later.fold(x[row], |sum, &i| sum - w[row][i] * solution[i]);
-            solution[row] = known / w[row][row];
-        }
-    }
-    solution
 }

@@ -2,6 +2,7 @@
 //! `scenes [--print] FIRST COUNT [SECONDS]`.
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
+use std::fs::File;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -21,14 +22,15 @@ fn main() {
     for seed in first..first + count {
         let page = folder.join(format!("scene_{seed}.toml"));
         std::fs::write(&page, gyro_pages::scene(seed)).expect("a model file");
+        let written = |name: &str| Stdio::from(File::create(folder.join(name)).expect("a file"));
         let begun = Instant::now();
         let mut run = Command::new(&gyro)
             .args(["simulate", "--quiet", "--no-prove", "--json"])
             .args([&page])
             .arg("--out")
             .arg(&folder)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
+            .stdout(written("out"))
+            .stderr(written("err"))
             .spawn()
             .expect("gyro is built");
         while run.try_wait().expect("a run").is_none() && begun.elapsed() < limit {
@@ -36,13 +38,14 @@ fn main() {
         }
         let _ = run.kill();
         let took = begun.elapsed();
-        let output = run.wait_with_output().expect("what it wrote");
-        let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        let status = run.wait().expect("a run");
+        let [out, err] =
+            ["out", "err"].map(|name| std::fs::read_to_string(folder.join(name)).expect("what it wrote"));
         let told = |key: &str| {
             let rest = out.split_once(&format!("\"{key}\":"))?.1.trim_start();
             rest.split([',', '}', '\n']).next().and_then(|number| number.trim().parse::<f64>().ok())
         };
-        let drift = told("energy_drift").filter(|_| output.status.success());
+        let drift = told("energy_drift").filter(|_| status.success());
         fine += usize::from(drift.is_some_and(|drift| drift < 1e-8));
         let fate = match drift {
             Some(drift) => format!("energy {drift:.1e}, {} steps", told("steps").unwrap_or(f64::NAN)),

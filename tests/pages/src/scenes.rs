@@ -51,14 +51,14 @@ pub fn scene(seed: u64) -> String {
 fn solid(dice: &mut Dice) -> (&'static str, String, [f64; 3]) {
     let [a, b, c] = [(); 3].map(|()| dice.between(0.08, 0.25));
     let round = |across: f64, along: f64| [across, across, along];
-    match dice.below(5) {
-        0 => ("sphere", format!("{a:.3}"), [0.4 * a * a; 3]),
-        1 => {
+    match dice.below(8) {
+        0 | 1 => ("sphere", format!("{a:.3}"), [0.4 * a * a; 3]),
+        2 | 3 => {
             let squares = [b * b + c * c, a * a + c * c, a * a + b * b];
             ("box", format!("[{a:.3}, {b:.3}, {c:.3}]"), squares.map(|sum| sum / 12.0))
         }
-        2 => ("cylinder", format!("[{a:.3}, {b:.3}]"), round(a * a / 4.0 + b * b / 12.0, a * a / 2.0)),
-        3 => {
+        4 => ("cylinder", format!("[{a:.3}, {b:.3}]"), round(a * a / 4.0 + b * b / 12.0, a * a / 2.0)),
+        5 | 6 => {
             ("capsule", format!("[{:.3}, {b:.3}]", a / 2.0), round(a * a / 16.0 + b * b / 12.0, a * a / 8.0))
         }
         _ => {
