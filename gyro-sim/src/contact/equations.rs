@@ -81,6 +81,8 @@ pub struct Contacts<D, T, const N: usize> {
     pub(super) ways: [T; N],
     /// Where they are not faster than this, their direction is for the most part that in which they did.
     pub(super) vague: [T; N],
+    /// How fast surfaces slid at the end of the last step, m/s.
+    pub(super) paces: [T; N],
     /// How forces of surfaces that touch at several points were divided among these when phases were chosen: where
     /// accelerations leave that open, it stays so.
     pub(super) split: [T; N],
@@ -111,7 +113,7 @@ pub(super) const LARGE: f64 = 1_099_511_627_776.0;
 impl<D, T: Real, const N: usize> Contacts<D, T, N> {
     pub(super) fn new(dynamics: D, contacts: [Contact<T>; N]) -> Self {
         let (phases, zero) = ([Phase::Free; N], T::constant(0.0));
-        let [ways, vague, split, slack] = [[zero; N]; 4];
+        let [ways, vague, paces, split, slack] = [[zero; N]; 5];
         let [largest, slowest, creep, weakest] = [zero; 4];
         Self {
             dynamics,
@@ -120,6 +122,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             largest,
             ways,
             vague,
+            paces,
             split,
             slack,
             slowest,

@@ -16,6 +16,8 @@ const WITHIN: f64 = 1.0 - 1e-9;
 const VAGUE: f64 = 1e-9;
 /// Friction that is at its bound where nothing slips may be beyond it by this part.
 const LOOSE: f64 = 1e-3;
+/// What comes to rest has less than this part of its velocity left after a step.
+const SLOWING: f64 = 0.9;
 /// What begins to slide has the direction of its beginning for this time, s.
 const SUDDEN: f64 = 1e-6;
 /// What a solution is off by times this may be nothing.
@@ -116,7 +118,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         self.dynamics.normalise(model, y);
     }
 
-    /// Has what slides go on in its present direction; returns the first contact that creeps.
+    /// Has what slides go on in its present direction; returns a contact that creeps: slowly, and no slower than before.
     pub(super) fn turn<M>(&mut self, model: &M, (t, y): (T, &D::State)) -> Option<usize>
     where
         D: Forced<M, Scalar = T>,
@@ -126,14 +128,19 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         }
         let rates = self.places(model, (t, y)).map(|[_, rate]| rate);
         self.turn_to(&rates);
-        (0..N).find(|&k| {
+        let mut creeps = None;
+        for k in 0..N {
             let slip = self.contacts[k].slip().filter(|_| self.phases[k] == Phase::Slides);
-            slip.filter(|(_, is_second)| !is_second).is_some_and(|(gap, _)| {
-                // What does not move at all is held by other points.
-                let speed = pair_size(&rates, gap);
-                self.slowest + self.slowest < speed && speed < self.creep
-            })
-        })
+            let Some((gap, false)) = slip else { continue };
+            let (before, now) = (self.paces[k], pair_size(&rates, gap));
+            // What does not move at all is held by other points.
+            let is_slow = self.slowest + self.slowest < now && now < self.creep;
+            if is_slow && now > T::constant(SLOWING) * before {
+                creeps = Some(k);
+            }
+            self.paces[k] = now;
+        }
+        creeps
     }
 
     fn turn_to(&mut self, rates: &[T; N]) {
