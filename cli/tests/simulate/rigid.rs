@@ -191,6 +191,46 @@ fn a_rocking_block_loses_what_housner_says() {
     near([at(first - 1e-9)[4], at(first + 1e-9)[4]], [-falls, -falls * left], 1e-7);
 }
 
+/// A crate that falls flat and obliquely, so slowly turned by its friction that it stays flat: all four corners have
+/// friction in the direction of one slip, and what they have together is that of a point.
+#[test]
+fn a_crate_that_lands_flat_slides_on_straight() {
+    let (mu, height, fast) = (0.3, 0.2, [2.0, -1.5]);
+    let page = ground([0.0, 0.0, -G])
+        + &body(
+            "crate",
+            [[0.0, 0.0, 0.1 + height], [fast[0], fast[1], 0.0], [0.0; 3]],
+            [0.01, 0.012, 0.02],
+            "[[body.shape]]\nbox = [0.4, 0.3, 0.2]",
+        )
+        + &between(
+            "lands",
+            "body = \"ground\"",
+            "body = \"crate\"",
+            &format!("restitution = 0\nfriction_coefficient = {mu}"),
+        );
+    let lands = (2.0 * height / G).sqrt();
+    let after = 2.5 - mu * G * lands;
+    for t in [lands + 1e-6, lands + 0.1, lands + 2.0] {
+        let run = run("rigid-lands", &page, &[&["--t-end", &format!("{t:?}")], &EXACT[..]].concat(), &[]);
+        let speed = (after - mu * G * (t - lands)).max(0.0) / 2.5;
+        near(moves(&run, "crate"), [fast[0] * speed, fast[1] * speed, 0.0, 0.0, 0.0, 0.0], 1e-9);
+    }
+}
+
+/// Spheres, boxes and capsules that are thrown upon each other: they bounce, slide, roll and come to lie, and no energy
+/// is lost but what impacts and friction take.
+#[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
+fn what_is_thrown_keeps_its_ledger() {
+    let is_round = |page: &String| page.contains("\ncylinder = ") || page.contains("\ntorus = ");
+    let scenes = (400..420).map(|seed| (seed, gyro_pages::scene(seed)));
+    for (seed, page) in scenes.filter(|(_, page)| !is_round(page)) {
+        let drift = run(&format!("rigid-thrown-{seed}"), &page, &[], &[])["energy_drift"].as_f64().unwrap();
+        assert!(drift < 1e-8, "scene {seed}: {drift}");
+    }
+}
+
 #[test]
 fn laws_that_do_not_go_together_are_refused() {
     for (law, words) in [

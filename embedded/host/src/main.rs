@@ -2,7 +2,7 @@
 
 use embedded_scenes::kernels::{Clock, Work};
 use embedded_scenes::runs::{Bits, Outcome, runs};
-use embedded_scenes::{quadruped, stabilised};
+use embedded_scenes::{balancer, quadruped, stabilised};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -19,6 +19,7 @@ fn print<T: Bits>() -> Result<(), gyro_sim::contact::Error> {
     for (name, run) in runs::<T>() {
         show(name, run()?);
     }
+    show(balancer::NAME, balancer::run::<T, _>(&mut Uncounted)?);
     show(quadruped::NAME, quadruped::run::<T, _>(&mut Uncounted)?);
     show(stabilised::NAME, stabilised::run::<T, _>(&mut Uncounted)?);
     Ok(())

@@ -2,6 +2,7 @@
 //! the generator. They are not kept in the repository.
 #![allow(clippy::all, unused_qualifications, reason = "generated code is checked for what it computes")]
 
+include!("../generated/balancer.rs");
 include!("../generated/chain.rs");
 include!("../generated/gimbal.rs");
 include!("../generated/gyroscope_combined_offsets.rs");

@@ -276,9 +276,12 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         }
         self.rub(&mut forces, &pulls);
         let right = local.accelerations(&forces).map(|a| -a);
-        let solve =
-            if self.contacts.iter().any(|contact| contact.role == Role::Gap) { spread } else { solve };
-        let change = solve(compliance, &right, &held);
+        let touch = self.contacts.iter().any(|contact| contact.role == Role::Gap);
+        let solve = |right: &[T; N]| match touch {
+            true => spread(compliance, right, &held),
+            false => solve(compliance, right, &held),
+        };
+        let change = solve(&right);
         forces = from_fn(|k| if held[k] { forces[k] + change[k] } else { forces[k] });
         self.rub(&mut forces, &pulls);
         let levels = self.levels(&forces);
@@ -293,7 +296,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             let mut response = [zero; N];
             if grows[j] > zero {
                 let way = if self.phases[j] == Phase::Up { -one } else { one };
-                response = solve(compliance, &from_fn(|i| -way * local.compliance[i][j]), &held);
+                response = solve(&from_fn(|i| -way * local.compliance[i][j]));
                 response[j] = way;
                 self.rub(&mut response, &pulls);
             }

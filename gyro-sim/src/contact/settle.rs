@@ -13,8 +13,8 @@ const SLOWEST: f64 = 1e-12;
 const PATIENCE: u32 = 8;
 /// What slips by less than this part of the fastest rate is tried to be held.
 const CREEP: f64 = 1e-8;
-/// What is solved of impacts is off by this much more than by rounding.
-const SOLVED: f64 = 1e3;
+/// What is solved of impacts may be off by this part of that.
+const SOLVED: f64 = 1e-2;
 
 /// What contacts have done so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,9 +181,8 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         let contacts = equations.contacts;
         let mut impulses = [zero; N];
         let rates = equations.places(model, (t, y)).map(|[_, rate]| rate);
-        // What is solved is off by some more rounding.
         let slowest = equations.slowest;
-        let solved = T::constant(SOLVED) * slowest;
+        let solved = larger(slowest, T::constant(SOLVED) * equations.creep);
         if (0..N).any(|k| hits[k].is_some_and(|(hit, _)| hit.outward * rates[k] < -slowest)) {
             let meets = |k: usize| contacts.get(k).is_some_and(|_| hits[k].is_some());
             let chosen = core::array::from_fn(|k| match contacts[k].slip() {
@@ -194,7 +193,6 @@ impl<T: Real, const N: usize> Ledger<T, N> {
             let outcome = equations
                 .struck(&local, &hits.map(|hit| hit.map(|(hit, _)| hit)))
                 .map_err(|jam| equations.jammed(t, &jam))?;
-
             self.record.lost = self.record.lost - work(&outcome, &local.rates);
             let met = (0..N).filter(|k| chosen[*k]).map(|k| local.bias[k].abs());
             equations.largest = met.fold(equations.largest, larger);

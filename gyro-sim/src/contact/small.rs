@@ -91,70 +91,63 @@ impl<T: Real, const N: usize> Factors<T, N> {
     /// Of the rows and columns that are chosen, the diagonal made larger by this part of it.
     fn new(matrix: &[[T; N]; N], chosen: &[bool; N], more: T) -> Self {
         let (zero, dependent) = (T::constant(0.0), not_below_rounding::<T>(DEPENDENT));
+        let (mut w, mut own) = ([[zero; N]; N], [zero; N]);
         let (mut left, mut n_left) = ([0; N], 0);
         for k in (0..N).filter(|k| chosen[*k]) {
+            for j in (0..N).filter(|j| chosen[*j]) {
+                w[k][j] = matrix[k][j];
+            }
+            w[k][k] = w[k][k] + more * w[k][k].abs();
+            own[k] = w[k][k];
             set(&mut left, n_left, k);
             n_left += 1;
         }
-        let mut w = [[zero; N]; N];
-        for &row in left.iter().take(n_left).filter(|row| **row < N) {
-            for &column in left.iter().take(n_left).filter(|column| **column < N) {
-                w[row][column] = matrix[row][column];
-            }
-            w[row][row] = w[row][row] + more * w[row][row].abs();
-        }
-        let own: [T; N] = core::array::from_fn(|k| w[k][k]);
+        let entry = |w: &[[T; N]; N], row: usize, column| w.get(row).map_or(zero, |row| at(row, column));
         let (mut order, mut n) = ([0; N], 0);
         while n < n_left {
-            let mut best: Option<(usize, T)> = None;
-            for (place, &k) in left.iter().enumerate().take(n_left).skip(n).filter(|(_, k)| **k < N) {
-                let share = w[k][k] / own[k];
-                if share > dependent && best.is_none_or(|(_, largest)| share > largest) {
-                    best = Some((place, share));
+            let mut best: Option<(usize, usize, T)> = None;
+            for (place, &k) in left.iter().enumerate().take(n_left).skip(n) {
+                let share = entry(&w, k, k) / at(&own, k);
+                if share > dependent && best.is_none_or(|(_, _, largest)| share > largest) {
+                    best = Some((place, k, share));
                 }
             }
-            // Indices that have been kept are compared with N, so that the compiler knows them to be within bounds.
-            let Some((place, pivot)) =
-                best.and_then(|(place, _)| left.get(place).map(|pivot| (place, *pivot)))
-            else {
-                break;
-            };
-            if pivot >= N {
-                break;
-            }
+            let Some((place, pivot, _)) = best else { break };
+            let Some(pivot_row) = w.get(pivot).copied() else { break };
+            // Of equal pivots the first is taken.
             let mut moved = pivot;
             for slot in left.iter_mut().take(place + 1).skip(n) {
                 moved = core::mem::replace(slot, moved);
             }
             set(&mut order, n, pivot);
             n += 1;
-            let pivot_row = w[pivot];
-            for &row in left.iter().take(n_left).skip(n).filter(|row| **row < N) {
-                let factor = w[row][pivot] / pivot_row[pivot];
-                for &column in left.iter().take(n_left).skip(n).filter(|column| **column < N) {
-                    w[row][column] = w[row][column] - factor * pivot_row[column];
+            for &row in left.iter().take(n_left).skip(n) {
+                let Some(row) = w.get_mut(row) else { continue };
+                let factor = at(row, pivot) / at(&pivot_row, pivot);
+                for &column in left.iter().take(n_left).skip(n) {
+                    let rest = at(row, column) - factor * at(&pivot_row, column);
+                    set(row, column, rest);
                 }
-                w[row][pivot] = factor;
+                set(row, pivot, factor);
             }
         }
         Self { w, order, n }
     }
 
     fn solve(&self, right: &[T; N]) -> [T; N] {
-        let mut x = *right;
-        let order = || self.order.iter().take(self.n).enumerate().filter(|(_, k)| **k < N);
-        for (place, &row) in order() {
-            let earlier = self.order.iter().take(place).filter(|k| **k < N);
-            x[row] = earlier.fold(x[row], |x_row, &k| x_row - self.w[row][k] * x[k]);
+        let (mut x, mut solution) = (*right, [T::constant(0.0); N]);
+        let rows = || self.order.iter().take(self.n).enumerate();
+        for (place, &k) in rows() {
+            let Some(row) = self.w.get(k) else { continue };
+            let earlier = self.order.iter().take(place);
+            let rest = earlier.fold(at(&x, k), |rest, &j| rest - at(row, j) * at(&x, j));
+            set(&mut x, k, rest);
         }
-        let mut solution = [T::constant(0.0); N];
-        for k in (0..N).rev().filter(|k| *k < self.n) {
-            let row = self.order[k];
-            if row < N {
-                let later = self.order.iter().take(self.n).skip(k + 1).filter(|i| **i < N);
-                let known = later.fold(x[row], |sum, &i| sum - self.w[row][i] * solution[i]);
-                solution[row] = known / self.w[row][row];
-            }
+        for (place, &k) in rows().rev() {
+            let Some(row) = self.w.get(k) else { continue };
+            let later = self.order.iter().take(self.n).skip(place + 1);
+            let rest = later.fold(at(&x, k), |rest, &j| rest - at(row, j) * at(&solution, j));
+            set(&mut solution, k, rest / at(row, k));
         }
         solution
     }

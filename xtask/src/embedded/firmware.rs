@@ -55,7 +55,7 @@ impl Chip {
 }
 
 /// What the firmware's package has in every precision.
-pub(crate) const PROGRAMS: [&str; 5] = ["control", "runs", "figures", "stabilised", "quadruped"];
+pub(crate) const PROGRAMS: [&str; 6] = ["balancer", "control", "runs", "figures", "stabilised", "quadruped"];
 
 /// A program for a chip.
 #[derive(Clone, Debug)]

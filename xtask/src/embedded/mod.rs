@@ -110,8 +110,9 @@ impl Board {
             let _spinner = Spinner::new(format!("running {} on {}", program.name, chip.name()));
             let output = Output::parse(&firmware::run(tools, chip, &program)?)
                 .map_err(|words| failed(chip, &format!("{}: {words}", program.name)))?;
-            let is_device =
-                ["control", "quadruped", "stabilised"].iter().any(|name| program.name.starts_with(name));
+            let is_device = ["balancer", "control", "quadruped", "stabilised"]
+                .iter()
+                .any(|name| program.name.starts_with(name));
             let stack = is_device.then(|| stack::bound(tools, &program)).transpose()?;
             programs.push(Ran { program, output, stack });
         }

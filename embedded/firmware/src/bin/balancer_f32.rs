@@ -1,0 +1,10 @@
+//! The balancing robot, in `f32`.
+#![no_std]
+#![no_main]
+
+use cortex_m_rt::entry;
+
+#[entry]
+fn main() -> ! {
+    firmware::balancer::run::<f32>()
+}
