@@ -1,4 +1,5 @@
-//! A robot on two wheels that roll: its motors have currents, and a controller at each tick of a clock keeps it upright.
+//! A robot on two wheels that roll: its motors have currents, and a controller at each tick of a clock keeps it
+//! upright.
 
 use crate::digest::Digest;
 use crate::kernels::{Clock, Work};

@@ -89,8 +89,8 @@ pub struct Contacts<D, T, const N: usize> {
     /// By how much friction of surfaces that stick may be beyond its bound: more where it is at its bound while nothing
     /// slips, as between bodies that slide down together.
     pub(super) slack: [T; N],
-    /// Slower than this nothing slips, m/s; what sticking would hold is let slip by no less than that, m/s; and no force
-    /// counts that is smaller than the last, N.
+    /// Slower than this nothing slips, m/s; what is no faster than that is tried to be held, m/s; and no force counts
+    /// that is smaller than the last, N.
     pub(super) slowest: T,
     pub(super) creep: T,
     pub(super) weakest: T,

@@ -118,7 +118,8 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         self.dynamics.normalise(model, y);
     }
 
-    /// Has what slides go on in its present direction; returns a contact that creeps: slowly, and no slower than before.
+    /// Has what slides go on in its present direction; returns a contact that creeps: slowly, and no slower than it did
+    /// before.
     pub(super) fn turn<M>(&mut self, model: &M, (t, y): (T, &D::State)) -> Option<usize>
     where
         D: Forced<M, Scalar = T>,
