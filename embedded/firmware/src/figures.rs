@@ -28,7 +28,7 @@ const NONE: Tally = Tally { least: u32::MAX, most: 0, sum: 0, number: 0 };
 
 /// The instructions of each kind of work.
 #[derive(Debug)]
-pub(crate) struct Counter {
+pub struct Counter {
     /// What it takes to time nothing.
     nothing: u32,
     tallies: [Tally; Work::ALL.len()],

@@ -5,12 +5,10 @@
 //! robots. All of it links only if no panic can be reached: see [`panic`](mod@panic).
 #![no_std]
 
-pub mod balancer;
 pub mod board;
 pub mod control;
+pub mod device;
 pub mod figures;
 pub mod panic;
 pub mod print;
-pub mod quadruped;
 pub mod runs;
-pub mod stabilised;

@@ -103,16 +103,19 @@ fn limited<T: Real>(voltage: T) -> T {
     }
 }
 
-/// The run: the digest of its states, and at its end the angles of both wheels and the sine of its lean.
+/// The run: the digest of its states, the angles of both wheels at its end, and the sine of its largest
+/// lean.
 ///
 /// # Errors
 /// That of a tick.
 pub fn run<T: Bits, C: Clock>(clock: &mut C) -> Result<Outcome<T>, Error> {
-    let (mut robot, mut digest) = (Balancer::<T>::new(), Digest::new());
+    let (mut robot, mut digest, mut most) = (Balancer::<T>::new(), Digest::new(), T::constant(0.0));
     for _ in 0..TICKS {
         clock.time(Work::Tick, || robot.tick())?;
+        let lean = robot.lean().abs();
+        most = if lean > most { lean } else { most };
         robot.state.as_ref().iter().for_each(|x| digest.add(x.bits()));
     }
-    let joints = [robot.at(joint::LEFT), robot.at(joint::RIGHT), robot.lean()];
+    let joints = [robot.at(joint::LEFT), robot.at(joint::RIGHT), most];
     Ok(Outcome { digest: digest.0, joints })
 }

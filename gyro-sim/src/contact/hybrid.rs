@@ -391,8 +391,8 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
     {
         let (t, y) = (self.solver.time(), self.solver.state().clone());
         let equations = self.solver.dynamics_mut();
-        let creeps = equations.turn(model, (t, &y));
-        if equations.phases.contains(&Phase::Slides) {
+        let (creeps, stops) = equations.turn(model, (t, &y));
+        if stops {
             self.solver.forget_stiffness();
         }
         creeps

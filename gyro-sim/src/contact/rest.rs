@@ -18,6 +18,8 @@ const VAGUE: f64 = 1e-9;
 const LOOSE: f64 = 1e-3;
 /// What comes to rest has less than this part of its velocity left after a step.
 const SLOWING: f64 = 0.9;
+/// So many times what creeps is slow.
+const SLOW: f64 = 1e2;
 /// What begins to slide has the direction of its beginning for this time, s.
 const SUDDEN: f64 = 1e-6;
 /// What a solution is off by times this may be nothing.
@@ -118,30 +120,32 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         self.dynamics.normalise(model, y);
     }
 
-    /// Has what slides go on in its present direction; returns a contact that creeps: slowly, and no slower than it did
-    /// before.
-    pub(super) fn turn<M>(&mut self, model: &M, (t, y): (T, &D::State)) -> Option<usize>
+    /// Has what slides go on in its present direction; returns a contact that creeps, slowly and no slower than it did
+    /// before, and whether any comes to rest or is so slow that what is fast is its direction.
+    pub(super) fn turn<M>(&mut self, model: &M, (t, y): (T, &D::State)) -> (Option<usize>, bool)
     where
         D: Forced<M, Scalar = T>,
     {
         if !self.phases.contains(&Phase::Slides) {
-            return None;
+            return (None, false);
         }
         let rates = self.places(model, (t, y)).map(|[_, rate]| rate);
         self.turn_to(&rates);
-        let mut creeps = None;
+        let (mut creeps, mut stops) = (None, false);
         for k in 0..N {
             let slip = self.contacts[k].slip().filter(|_| self.phases[k] == Phase::Slides);
             let Some((gap, false)) = slip else { continue };
             let (before, now) = (self.paces[k], pair_size(&rates, gap));
             // What does not move at all is held by other points.
-            let is_slow = self.slowest + self.slowest < now && now < self.creep;
-            if is_slow && now > T::constant(SLOWING) * before {
+            let moves = |speed: T| speed > self.slowest + self.slowest;
+            let slows = moves(before) && now <= T::constant(SLOWING) * before;
+            stops |= slows || (moves(now) && now < T::constant(SLOW) * self.creep);
+            if moves(now) && now < self.creep && !slows {
                 creeps = Some(k);
             }
             self.paces[k] = now;
         }
-        creeps
+        (creeps, stops)
     }
 
     fn turn_to(&mut self, rates: &[T; N]) {

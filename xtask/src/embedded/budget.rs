@@ -74,6 +74,7 @@ pub(crate) fn lines(tools: &Tools, boards: &[Board]) -> Result<Vec<Line>, Failur
             f64::from(longest),
         ),
         line("ticks of the control loop that took too long", "", 0.0, overruns(boards)),
+        line("sine of the largest lean of the robot on two wheels", "", 0.5, largest_lean(boards)),
     ])
 }
 
@@ -107,6 +108,13 @@ fn spread(boards: &[Board]) -> f64 {
 fn overruns(boards: &[Board]) -> f64 {
     let overruns = boards.iter().flat_map(|board| &board.programs).filter_map(|ran| ran.output.overruns);
     overruns.map(f64::from).fold(f64::NAN, f64::max)
+}
+
+/// That of a robot that has fallen is 1, or no number.
+fn largest_lean(boards: &[Board]) -> f64 {
+    let runs = boards.iter().flat_map(|board| &board.programs).flat_map(|ran| &ran.output.runs);
+    let leans = runs.filter(|run| run.name.starts_with("balancer")).map(|run| run.joint(2));
+    leans.reduce(|most, lean| if lean <= most { most } else { lean }).unwrap_or(f64::NAN)
 }
 
 /// The paper's α and β after a second.

@@ -3,8 +3,9 @@
 #![no_main]
 
 use cortex_m_rt::entry;
+use embedded_scenes::balancer::{self, Balancer};
 
 #[entry]
 fn main() -> ! {
-    firmware::balancer::run::<f32>()
+    firmware::device::run::<f32, Balancer<f32>, _>(balancer::NAME, balancer::run)
 }

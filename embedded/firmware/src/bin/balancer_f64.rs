@@ -3,8 +3,9 @@
 #![no_main]
 
 use cortex_m_rt::entry;
+use embedded_scenes::balancer::{self, Balancer};
 
 #[entry]
 fn main() -> ! {
-    firmware::balancer::run::<f64>()
+    firmware::device::run::<f64, Balancer<f64>, _>(balancer::NAME, balancer::run)
 }

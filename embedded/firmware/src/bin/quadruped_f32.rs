@@ -3,8 +3,9 @@
 #![no_main]
 
 use cortex_m_rt::entry;
+use embedded_scenes::quadruped::{self, Quadruped};
 
 #[entry]
 fn main() -> ! {
-    firmware::quadruped::run::<f32>()
+    firmware::device::run::<f32, Quadruped<f32>, _>(quadruped::NAME, quadruped::run)
 }

@@ -3,8 +3,9 @@
 #![no_main]
 
 use cortex_m_rt::entry;
+use embedded_scenes::quadruped::{self, Quadruped};
 
 #[entry]
 fn main() -> ! {
-    firmware::quadruped::run::<f64>()
+    firmware::device::run::<f64, Quadruped<f64>, _>(quadruped::NAME, quadruped::run)
 }

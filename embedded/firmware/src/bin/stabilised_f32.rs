@@ -3,8 +3,9 @@
 #![no_main]
 
 use cortex_m_rt::entry;
+use embedded_scenes::stabilised::{self, Stabilised};
 
 #[entry]
 fn main() -> ! {
-    firmware::stabilised::run::<f32>()
+    firmware::device::run::<f32, Stabilised<f32>, _>(stabilised::NAME, stabilised::run)
 }

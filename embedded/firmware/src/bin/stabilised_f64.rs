@@ -3,8 +3,9 @@
 #![no_main]
 
 use cortex_m_rt::entry;
+use embedded_scenes::stabilised::{self, Stabilised};
 
 #[entry]
 fn main() -> ! {
-    firmware::stabilised::run::<f64>()
+    firmware::device::run::<f64, Stabilised<f64>, _>(stabilised::NAME, stabilised::run)
 }
