@@ -5,11 +5,14 @@
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
 use gyro_codegen::{Functions, Module};
+use serde_json::Value;
 use std::error::Error;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::thread;
 use std::time::Instant;
 
 /// Random model files to a program.
@@ -30,9 +33,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     let is_timed = arguments.iter().any(|argument| argument == "--time");
     let files = arguments.iter().filter(|argument| argument.ends_with(".toml"));
     let files: Vec<Page> = files.map(|file| of_file(Path::new(file))).collect::<Result<_, _>>()?;
-    for files in files.chunks(FILES) {
-        compare(files, is_timed)?;
-    }
+    let compiler = Compiler::found(is_timed)?;
+    // What is timed is timed alone.
+    let n_workers = if is_timed { 1 } else { thread::available_parallelism()?.get() };
+    let programs: Mutex<_> = Mutex::new(files.chunks(FILES).enumerate());
+    let next = || programs.lock().map_err(|error| error.to_string()).map(|mut programs| programs.next());
+    let work = || -> Result<(), String> {
+        while let Some((number, files)) = next()? {
+            compare(&compiler, number, files).map_err(|error| error.to_string())?;
+        }
+        Ok(())
+    };
+    thread::scope(|scope| {
+        let workers: Vec<_> = (0..n_workers).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().try_for_each(|worker| worker.join().map_err(|_| "a worker panicked")?)
+    })?;
     let numbers: Vec<u64> = arguments.iter().filter_map(|argument| argument.parse().ok()).collect();
     let record = root()?.join("target/beside-rustc.next");
     let goes_on = arguments.iter().any(|argument| argument == "--on");
@@ -46,7 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let seeds = from..(from + BATCH).min(first + count);
         let random = |seed| Page { name: format!("page {seed}"), text: gyro_pages::page(seed), folder: None };
         let next = seeds.end;
-        compare(&seeds.map(random).collect::<Vec<_>>(), is_timed)?;
+        compare(&compiler, 0, &seeds.map(random).collect::<Vec<_>>())?;
         println!("seeds {from} to {}", next - 1);
         if goes_on {
             fs::write(&record, next.to_string())?;
@@ -66,9 +81,9 @@ fn of_file(path: &Path) -> Result<Page, Box<dyn Error>> {
 }
 
 /// Writes a program with a module for each model file, compiles it and runs it.
-fn compare(pages: &[Page], is_timed: bool) -> Result<(), Box<dyn Error>> {
+fn compare(compiler: &Compiler, number: usize, pages: &[Page]) -> Result<(), Box<dyn Error>> {
     let root = root()?;
-    let folder = std::env::temp_dir().join("gyro-beside-rustc");
+    let folder = root.join(format!("target/beside-rustc-{number}"));
     let began = Instant::now();
     let mut main = format!(
         "#[path = {:?}]\nmod pair;\n#[path = {:?}]\nmod program;\n",
@@ -76,7 +91,7 @@ fn compare(pages: &[Page], is_timed: bool) -> Result<(), Box<dyn Error>> {
         root.join("jit/examples/beside_rustc/program.rs")
     );
     let mut calls = String::new();
-    fs::create_dir_all(folder.join("src"))?;
+    fs::create_dir_all(&folder)?;
     for (n, page) in pages.iter().enumerate() {
         let module = generated(page)?;
         let with_joints = if module.implements("JointSpace") { "_with_joints" } else { "" };
@@ -86,26 +101,19 @@ fn compare(pages: &[Page], is_timed: bool) -> Result<(), Box<dyn Error>> {
             "    program.check{with_joints}({:?}, {:?}, {:?}, m{n}::{}::<f64>::default());",
             page.name, page.text, page.folder, module.type_name
         )?;
-        fs::write(folder.join(format!("src/m{n}.rs")), &module.code)?;
+        fs::write(folder.join(format!("m{n}.rs")), &module.code)?;
     }
     let derived = began.elapsed().as_secs_f64();
     write!(
         main,
-        "fn main() {{\n    let mut program = program::Program::new({is_timed});\n{calls}    program.tell();\n}}\n"
+        "fn main() {{\n    let mut program = program::Program::new({});\n{calls}    program.tell();\n}}\n",
+        compiler.is_timed
     )?;
-    fs::write(folder.join("src/main.rs"), main)?;
-    fs::write(folder.join("Cargo.toml"), manifest(root))?;
-    fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock"))?;
-    let cargo = |command: &str| {
-        let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-        cargo.args([command, "--quiet", "--offline"]).args(is_timed.then_some("--release"));
-        cargo.arg("--manifest-path");
-        cargo.arg(folder.join("Cargo.toml")).env("CARGO_TARGET_DIR", root.join("target"));
-        cargo.status()
-    };
-    let is_built = cargo("build")?.success();
+    let (source, program) = (folder.join("main.rs"), folder.join("compared"));
+    fs::write(&source, main)?;
+    let is_built = compiler.start().arg(source).arg("-o").arg(&program).status()?.success();
     let compiled = began.elapsed().as_secs_f64();
-    if !is_built || !cargo("run")?.success() {
+    if !is_built || !Command::new(program).status()?.success() {
         return Err("they differ, or there is no such program: see above".into());
     }
     let ran = began.elapsed().as_secs_f64();
@@ -127,23 +135,50 @@ fn generated(page: &Page) -> Result<Module, Box<dyn Error>> {
     Ok(gyro_codegen::generate_functions("page.toml", &model, &Functions::of_solvers())?)
 }
 
-/// What is timed is optimised as a user's release build is; all else is compiled as in the workspace, with which it
-/// shares the crates of others.
-fn manifest(root: &Path) -> String {
-    let library = |name: &str, folder: &str| format!("{name} = {{ path = {:?} }}\n", root.join(folder));
-    let libraries = [
-        library("gyro-codegen", "codegen"),
-        library("gyro-jit", "jit"),
-        library("gyro-model", "model"),
-        library("gyro-pages", "tests/pages"),
-        library("gyro-verifier", "verifier"),
-    ];
-    format!(
-        "[package]\nname = \"beside-rustc\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[workspace]\n[dependencies]\n{}\
-         gyro-sim = {{ path = {:?}, default-features = false }}\nrand = \"0.10\"\n\
-         chacha20 = {{ version = \"0.10\", default-features = false, features = [\"rng\"] }}\n\
-         [profile.dev]\nopt-level = 1\ndebug = false\nincremental = false\nlto = \"off\"\ncodegen-units = 16\n",
-        libraries.concat(),
-        root.join("gyro-sim"),
-    )
+/// rustc with the libraries of this workspace, as they were built for this program. What is timed is optimised as a
+/// user's release build is.
+struct Compiler {
+    is_timed: bool,
+    libraries: Vec<[String; 2]>,
+}
+
+impl Compiler {
+    fn found(is_timed: bool) -> Result<Self, Box<dyn Error>> {
+        const LIBRARIES: [&str; 8] = [
+            "gyro_codegen",
+            "gyro_jit",
+            "gyro_model",
+            "gyro_pages",
+            "gyro_sim",
+            "gyro_verifier",
+            "rand",
+            "chacha20",
+        ];
+        let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        cargo.current_dir(root()?).args(["build", "--quiet", "--offline", "--message-format", "json"]);
+        // As `.ci/beside-rustc` has built this program: nothing is compiled again.
+        cargo.args(["--package", "gyro-cli", "--package", "gyro-jit", "--example", "beside_rustc"]);
+        let told = cargo.args(is_timed.then_some("--release")).stderr(Stdio::inherit()).output()?;
+        let mut libraries = Vec::new();
+        for line in String::from_utf8(told.stdout)?.lines() {
+            let artifact: Value = serde_json::from_str(line)?;
+            let name = artifact["target"]["name"].as_str().filter(|name| LIBRARIES.contains(name));
+            let file = artifact["filenames"][0].as_str().filter(|file| file.ends_with(".rlib"));
+            libraries.extend(name.zip(file).map(|(name, file)| [name, file].map(str::to_owned)));
+        }
+        match libraries.len() == LIBRARIES.len() {
+            true => Ok(Self { is_timed, libraries }),
+            false => Err("some libraries were not built, or twice".into()),
+        }
+    }
+
+    fn start(&self) -> Command {
+        let mut rustc = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
+        rustc.args(["--edition", "2024", "-C", if self.is_timed { "opt-level=3" } else { "opt-level=1" }]);
+        for [name, file] in &self.libraries {
+            rustc.arg("--extern").arg(format!("{name}={file}"));
+            rustc.arg("-L").arg(Path::new(file).parent().unwrap_or(Path::new("")));
+        }
+        rustc
+    }
 }
