@@ -53,11 +53,11 @@ pub trait Forced<M = ()>: Ode<M> {
         _out: &mut [[Self::Scalar; 3]],
     ) {
     }
-    /// Whether there may be contacts between surfaces.
+    /// Whether there may be contacts of which the system tells all.
     const HAS_SURFACES: bool = false;
-    /// Writes value, rate and acceleration of contacts between surfaces ([`Contact::surfaces`]) under these forces: a
-    /// gap, m, and the velocities of slip, m/s, whose values are zero. What forces do is dual to that: the power of a
-    /// force is its product with the rate.
+    /// Writes value, rate and acceleration of these contacts under these forces: of a coordinate ([`Contact::seen`]), or
+    /// of two surfaces ([`Contact::surfaces`]) a gap, m, and the velocities of slip, m/s, whose values are zero. What
+    /// forces do is dual to that: the power of a force is its product with the rate.
     fn seen(
         &self,
         _model: &M,
@@ -132,12 +132,12 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         }
     }
 
-    /// Whether any of the contacts are between surfaces.
+    /// Whether any of the contacts are between surfaces, or along what only the system sees.
     pub(super) fn has_surfaces<M>(&self) -> bool
     where
         D: Forced<M, Scalar = T>,
     {
-        D::HAS_SURFACES && self.contacts.iter().any(|contact| contact.role == Role::Gap)
+        D::HAS_SURFACES && self.contacts.iter().any(|contact| matches!(contact.role, Role::Gap | Role::Seen))
     }
 
     /// Value and rate of each contact.
@@ -153,7 +153,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         let contact = &self.contacts[k];
         match contact.role {
             Role::Coordinate => [at(y, contact.coordinate), at(y, contact.rate)],
-            Role::Gap | Role::Slip { .. } => [seen[k][0], seen[k][1]],
+            Role::Seen | Role::Gap | Role::Slip { .. } => [seen[k][0], seen[k][1]],
         }
     }
 
@@ -188,7 +188,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             let (contact, [_, rate]) = (&self.contacts[k], self.place(k, y.as_ref(), &seen));
             match contact.role {
                 Role::Coordinate => [rate, at(scratch.as_ref(), contact.rate)],
-                Role::Gap | Role::Slip { .. } => [rate, seen[k][2]],
+                Role::Seen | Role::Gap | Role::Slip { .. } => [rate, seen[k][2]],
             }
         })
     }
@@ -276,7 +276,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         }
         self.rub(&mut forces, &pulls);
         let right = local.accelerations(&forces).map(|a| -a);
-        let touch = self.contacts.iter().any(|contact| contact.role == Role::Gap);
+        let touch = self.contacts.iter().any(|contact| matches!(contact.role, Role::Gap | Role::Seen));
         let solve = |right: &[T; N]| match touch {
             true => spread(compliance, right, &held),
             false => solve(compliance, right, &held),

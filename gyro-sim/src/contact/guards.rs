@@ -63,10 +63,16 @@ where
         }
         let (value, [low, high]) =
             if phase.is_held() { (forces[k], bounds(levels[k], phase)) } else { (x, contact.ends) };
-        (guards[0][k], guards[1][k]) = (some(value - low), some(high - value));
+        // What only the system sees is held to rounding, not to the bit.
+        let [weakest, slowest] = match contact.role {
+            Role::Seen => [equations.weakest, equations.slowest],
+            _ => [T::constant(0.0); 2],
+        };
+        let spare = if phase.is_held() { weakest } else { T::constant(0.0) };
+        (guards[0][k], guards[1][k]) = (some(value - low + spare), some(high - value + spare));
         match phase {
-            Phase::Up => guards[2][k] = rate,
-            Phase::Down => guards[2][k] = -rate,
+            Phase::Up => guards[2][k] = rate + slowest,
+            Phase::Down => guards[2][k] = slowest - rate,
             _ => {}
         }
     }
@@ -76,7 +82,7 @@ where
 /// How far rounding may take a guard below zero while it does not go there; positions are of this size.
 pub(super) fn noise<T: Real>(contact: &Contact<T>, size: T, kind: usize, begin: T) -> T {
     let end = match contact.role {
-        Role::Gap => size,
+        Role::Gap | Role::Seen => size,
         _ => contact.ends.get(kind).map_or(T::constant(0.0), |end| end.abs()),
     };
     let rounding = if end.is_finite() { T::constant(4.0) * T::EPSILON * end } else { T::constant(0.0) };

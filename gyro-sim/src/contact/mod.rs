@@ -131,6 +131,8 @@ pub struct Contact<T> {
 enum Role {
     /// Elements of the state.
     Coordinate,
+    /// A coordinate that is no element of the state, of which the system tells all.
+    Seen,
     /// The gap between two surfaces, which the system tells.
     Gap,
     /// A component of the velocity with which surfaces slip: of which gap, and the first or the second.
@@ -152,6 +154,12 @@ impl<T: Real> Contact<T> {
             coefficients: [zero; 2],
             is_of_impulses: false,
         }
+    }
+
+    /// Nothing yet, along a coordinate that is no element of the state: the system tells its value, rate and acceleration
+    /// ([`Forced::seen`]).
+    pub fn seen() -> Self {
+        Self { role: Role::Seen, ..Self::new(usize::MAX, usize::MAX) }
     }
 
     /// Two surfaces that touch at a point: three contacts, of which the first has this place among all. They are the
@@ -213,19 +221,24 @@ impl<T: Real> Contact<T> {
 
     /// Whether its friction depends on a reaction.
     fn is_loaded(&self) -> bool {
-        self.role == Role::Coordinate && self.coefficients[1] > T::constant(0.0)
+        matches!(self.role, Role::Coordinate | Role::Seen) && self.coefficients[1] > T::constant(0.0)
     }
 
     /// Whether friction opposes the slip of surfaces.
     fn grips(&self) -> bool {
-        self.role != Role::Coordinate && self.coefficients[1] > T::constant(0.0)
+        matches!(self.role, Role::Gap | Role::Slip { .. }) && self.coefficients[1] > T::constant(0.0)
+    }
+
+    /// Whether, of both ends, the upper one is the nearer.
+    fn is_nearer_upper(&self, x: T) -> bool {
+        x - self.ends[0] > self.ends[1] - x
     }
 
     /// The gap whose push bounds friction, and whether this is the second of the two components.
     fn slip(&self) -> Option<(usize, bool)> {
         match self.role {
             Role::Slip { gap, is_second } => Some((gap, is_second)),
-            Role::Coordinate | Role::Gap => None,
+            Role::Coordinate | Role::Seen | Role::Gap => None,
         }
     }
 }

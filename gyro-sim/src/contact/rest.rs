@@ -79,13 +79,22 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             .map_err(|contact| Jam { contact, gain: 1.0 })
     }
 
-    /// Takes from what is held the rates that it has, and from gaps what they are open or overlap, by impulses along
-    /// them.
+    /// Where what is held by a stop is to be; no number for all else.
+    pub(super) fn ends(&self) -> [T; N] {
+        from_fn(|k| match self.phases[k] {
+            Phase::AtLower => self.contacts[k].ends[0],
+            Phase::AtUpper => self.contacts[k].ends[1],
+            _ => T::constant(f64::NAN),
+        })
+    }
+
+    /// Takes from what is held the rates that it has, and brings what the system tells of to these ends, where they are
+    /// numbers, by impulses along it.
     pub(super) fn hold<M>(
         &self,
         model: &M,
         (t, y): (T, &mut D::State),
-        held: &[bool; N],
+        (held, ends): (&[bool; N], &[T; N]),
         scratch: &mut [D::State; 2],
     ) where
         D: Forced<M, Scalar = T>,
@@ -95,8 +104,9 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         }
         let local = self.local(model, (t, y), held, &mut scratch[0]);
         let places = self.places(model, (t, y));
-        let is_open = |k: usize| self.contacts[k].role == Role::Gap && held[k];
-        let gaps = from_fn(|k| if is_open(k) { -places[k][0] } else { T::constant(0.0) });
+        let is_told = |k: usize| matches!(self.contacts[k].role, Role::Gap | Role::Seen);
+        let is_off = |k: usize| held[k] && is_told(k) && ends[k].is_finite();
+        let gaps = from_fn(|k| if is_off(k) { ends[k] - places[k][0] } else { T::constant(0.0) });
         let moves = spread(&local.compliance, &gaps, held);
         let stops = spread(&local.compliance, &local.rates.map(|rate| -rate), held);
         let own = self.dynamics.rates(model);
@@ -188,15 +198,17 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             let is_loaded = contact.slip().is_some_and(|(gap, _)| rests_on(gap)) && contact.acts();
             match contact.role {
                 Role::Gap if rests[k] => Phase::AtLower,
+                Role::Seen if rests[k] && contact.is_nearer_upper(x) => Phase::AtUpper,
+                Role::Seen if rests[k] => Phase::AtLower,
                 Role::Slip { .. } if is_loaded && still[k] => Phase::Sticks,
                 Role::Slip { .. } if is_loaded => Phase::Slides,
                 Role::Gap | Role::Slip { .. } => Phase::Free,
                 Role::Coordinate if rate == zero && x <= contact.ends[0] => Phase::AtLower,
                 Role::Coordinate if rate == zero && x >= contact.ends[1] => Phase::AtUpper,
-                Role::Coordinate if !contact.rubs() => Phase::Free,
-                Role::Coordinate if rate > zero => Phase::Up,
-                Role::Coordinate if rate < zero => Phase::Down,
-                Role::Coordinate => Phase::Sticks,
+                _ if !contact.rubs() => Phase::Free,
+                _ if self.is_at_rest(k, rate) => Phase::Sticks,
+                _ if rate > zero => Phase::Up,
+                _ => Phase::Down,
             }
         });
         let held = self.phases.map(Phase::is_held);
@@ -207,7 +219,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         let acting = from_fn(|k| match self.contacts[k].role {
             Role::Gap => rests[k],
             Role::Slip { .. } => self.phases[k] != Phase::Free,
-            Role::Coordinate => self.contacts[k].acts(),
+            Role::Coordinate | Role::Seen => self.contacts[k].acts(),
         });
         let local = self.local(model, (t, y), &acting, scratch);
         let loads = self.loads(model, (t, y), &acting);
@@ -302,6 +314,14 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         if worst <= unmet { Ok(()) } else { Err(self.jammed(t, &jam(0))) }
     }
 
+    /// Whether a coordinate does not move.
+    fn is_at_rest(&self, k: usize, rate: T) -> bool {
+        match self.contacts[k].role {
+            Role::Seen => rate.abs() <= self.slowest,
+            _ => rate == T::constant(0.0),
+        }
+    }
+
     /// A coordinate or a gap is let go this way; surfaces that part rub no longer.
     fn leave(&mut self, k: usize, way: Phase) {
         self.phases[k] = if self.contacts[k].rubs() { way } else { Phase::Free };
@@ -354,15 +374,16 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
                     note(k, Phase::Up, (low - self.weakest - forces[k]) * own);
                     note(k, Phase::Down, (forces[k] - high - self.weakest) * own);
                 }
-                (None, Phase::Free) if rests[k] => {
-                    let (is_upper, way) = match contact.role {
-                        Role::Coordinate => (places[k][0] >= contact.ends[1], accelerations[k]),
-                        _ => (false, accelerations[k]),
-                    };
-                    if is_upper { note(k, Phase::AtUpper, way) } else { note(k, Phase::AtLower, -way) }
+                (None, Phase::Free) if rests[k] => match contact.is_nearer_upper(places[k][0]) {
+                    true => note(k, Phase::AtUpper, accelerations[k]),
+                    false => note(k, Phase::AtLower, -accelerations[k]),
+                },
+                (None, Phase::Up) if self.is_at_rest(k, places[k][1]) => {
+                    note(k, Phase::Sticks, -accelerations[k]);
                 }
-                (None, Phase::Up) if places[k][1] == zero => note(k, Phase::Sticks, -accelerations[k]),
-                (None, Phase::Down) if places[k][1] == zero => note(k, Phase::Sticks, accelerations[k]),
+                (None, Phase::Down) if self.is_at_rest(k, places[k][1]) => {
+                    note(k, Phase::Sticks, accelerations[k]);
+                }
                 _ => {}
             }
         }

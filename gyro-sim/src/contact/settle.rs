@@ -118,7 +118,9 @@ impl<T: Real, const N: usize> Ledger<T, N> {
             guards[kind][k] <= zero
                 || next.is_some_and(|(next, _)| next.kind == kind && next.contact == k)
                 || length.is_some_and(|h| is_as_good_as_reached(phases[k], places[k], guards[kind][k], h))
-                || (contacts[k].role == Role::Gap && kind == 0 && guards[kind][k] <= rounding(size))
+                || (matches!(contacts[k].role, Role::Gap | Role::Seen)
+                    && kind < 2
+                    && guards[kind][k] <= rounding(size))
         };
         let at_lower: [bool; N] = core::array::from_fn(|k| !phases[k].is_held() && is_due(0, k));
         let at_upper: [bool; N] = core::array::from_fn(|k| !phases[k].is_held() && is_due(1, k));
@@ -135,7 +137,11 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         // Surfaces that slide are brought to rest where their velocity has no other component.
         let caught: [bool; N] = core::array::from_fn(|k| {
             let is_it = next.is_some_and(|(next, _)| next.kind == 2 && next.contact == k);
-            jumped.is_none() && phases[k] == Phase::Slides && (is_it || guards[2][k] < zero)
+            let moves = match contacts[k].role {
+                Role::Seen => matches!(phases[k], Phase::Up | Phase::Down),
+                _ => phases[k] == Phase::Slides,
+            };
+            jumped.is_none() && moves && (is_it || guards[2][k] < zero)
         });
         // What has rested on a stop does not hit it.
         let before: [T; N] = core::array::from_fn(|k| match jumped {
@@ -226,10 +232,15 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         });
         let held = core::array::from_fn(|k| match contacts[k].role {
             Role::Coordinate => equations.phases[k].is_held() || rests[k],
+            Role::Seen => equations.phases[k] == Phase::Sticks || rests[k] || caught[k],
             Role::Gap => rests[k],
             Role::Slip { .. } => still[k] && contacts[k].acts(),
         });
-        equations.hold(model, (t, y), &held, scratch);
+        let ends = core::array::from_fn(|k| match hits[k] {
+            Some((_, is_upper)) if rests[k] => contacts[k].ends[usize::from(is_upper)],
+            _ => T::constant(f64::NAN),
+        });
+        equations.hold(model, (t, y), (&held, &ends), scratch);
         equations.choose_surfaces(model, (t, y), [&rests, &still, reached], &mut scratch[0])
     }
 
@@ -273,7 +284,7 @@ impl<T: Real, const N: usize> Ledger<T, N> {
             let rebound = restitution * approach;
             // A gap that rounding hides is none.
             let hidden = match contacts[k].role {
-                Role::Gap => (T::constant(2.0) * *largest * rounding(size)).sqrt(),
+                Role::Gap | Role::Seen => (T::constant(2.0) * *largest * rounding(size)).sqrt(),
                 _ => zero,
             };
             let is_slow = rebound <= larger(T::constant(SLOWEST) * *fastest, hidden);

@@ -90,7 +90,8 @@ impl<D, S: Storage<T>, T: Real, const N: usize> Stepped<D, S, T, N> {
             self.rk4.step(&self.equations, model, begin, h, y);
             let held = self.equations.phases.map(Phase::is_held);
             if held.contains(&true) && self.equations.has_surfaces::<M>() {
-                self.equations.hold(model, (end, y), &held, &mut self.scratch);
+                let ends = self.equations.ends();
+                self.equations.hold(model, (end, y), (&held, &ends), &mut self.scratch);
             }
             let guards = guards(&self.equations, model, (end, y), &mut self.scratch[1]);
             if guards.as_ref().iter().any(|guard| *guard < T::constant(0.0)) {

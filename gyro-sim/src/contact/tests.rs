@@ -4,6 +4,7 @@ mod fading;
 mod listed;
 mod loads;
 mod loops;
+mod seen;
 mod stepped;
 mod surfaces;
 
