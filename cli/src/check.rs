@@ -8,7 +8,7 @@ use crate::show::meshes;
 use crate::words::{count, listed, number};
 use crate::write::{self, Known};
 use crate::{columns, contacts, controllers, remarks, scene};
-use gyro_codegen::{Functions, Group, lacks_joint_coordinates};
+use gyro_codegen::{Functions, Group};
 use gyro_model::{Attachment, Body, Link, Model, Number, Start, Support, Tree};
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -159,16 +159,11 @@ fn closure(model: &Model, start: &Start) -> String {
 /// The coordinates of a run, and the functions of the module.
 fn coordinates(model: &Model, functions: &Functions) -> String {
     let names: Vec<String> = columns::coordinates(model).into_iter().map(|shown| shown.name).collect();
-    let mut text = match lacks_joint_coordinates(model) {
-        None => "Maximal or joint coordinates.\n".to_owned(),
-        Some(what) => format!("Maximal coordinates alone, as there is {what}.\n"),
-    };
+    let mut text = "Maximal or joint coordinates.\n".to_owned();
     if !names.is_empty() {
         let _ = writeln!(text, "coordinates: {}", listed(&names));
     }
-    let lacks = lacks_joint_coordinates(model).is_some();
-    let groups = Group::all()
-        .filter(|&group| functions.has(group) && !(lacks && group.with_needs().contains(&Group::Joint)));
+    let groups = Group::all().filter(|&group| functions.has(group));
     let _ = writeln!(text, "functions: {}", groups.map(Group::name).collect::<Vec<_>>().join(", "));
     text
 }

@@ -35,7 +35,7 @@ const PATIENCE: f64 = 3600.0;
 
 /// How a run of a model is made that is asked for in this way.
 pub(crate) fn choose(model: &Model, args: &SimulateArgs, offers: &Offers) -> (Approach, Chosen) {
-    let choice = Choice { model, page: &model.simulation, args, offers };
+    let choice = Choice { page: &model.simulation, args, offers };
     let (coordinates, of_coordinates) = choice.coordinates();
     let is_fixed = choice.is_fixed();
     let (integrator, why) = choice.integrator(is_fixed);
@@ -91,7 +91,6 @@ fn known<T: FromStr>(word: &str) -> Option<T> {
 }
 
 struct Choice<'a> {
-    model: &'a Model,
     page: &'a Simulation,
     args: &'a SimulateArgs,
     offers: &'a Offers,
@@ -122,10 +121,7 @@ impl Choice<'_> {
     }
 
     fn without_joints(&self) -> String {
-        match gyro_codegen::lacks_joint_coordinates(self.model) {
-            Some(what) => format!("`{}` has {what}", self.model.name),
-            None => format!("engine {} has no others", self.args.engine().name()),
-        }
+        format!("engine {} has no others", self.args.engine().name())
     }
 
     /// Whether steps have a fixed length.

@@ -24,6 +24,7 @@ pub(crate) fn contacts(model: &Model) -> Vec<Touch> {
                 contact.radius.as_ref().map_or(1.0, |radius| model.value(radius)) * model.value(coefficient)
             })),
             reaction: contact.reaction.map(place),
+            seen: contact.seen.map(place),
         })
     };
     let surfaces = |touching: &Touching| {

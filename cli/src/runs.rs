@@ -75,8 +75,9 @@ impl Runs {
             (_, Correction::ClosedForm, _) => &[Group::Corrected, Group::Joint],
             (_, Correction::Partition, _) => &[Group::Corrected],
         };
+        let touching: &[Group] = if self.touches { &[Group::Joint] } else { &[] };
         let examined: &[Group] = if self.is_examined { &[Group::Joint, Group::Jacobian] } else { &[] };
-        Functions::of([&[Group::Partition], of_runs, examined].concat())
+        Functions::of([&[Group::Partition], of_runs, touching, examined].concat())
     }
 
     /// With what motions are begun.
@@ -86,7 +87,6 @@ impl Runs {
         let kind = match (self.coordinates, self.correction, self.is_implicit) {
             (Coordinates::Joint, _, true) if has_jacobian => format!("{of}::ImplicitInJoints"),
             (Coordinates::Joint, _, true) => in_duals("ImplicitInJointsByDuals", precision),
-            (Coordinates::Joint, _, false) if self.touches => format!("{of}::InJointsTouching"),
             (Coordinates::Joint, _, false) => format!("{of}::InJoints"),
             (_, _, true) => in_duals("Implicit", precision),
             (_, Correction::Partition, _) => format!("{of}::Partitioned"),
@@ -95,6 +95,7 @@ impl Runs {
             (_, Correction::Baumgarte(_), _) => format!("{of}::Stabilised"),
             (_, Correction::None, _) => format!("{of}::Direct"),
         };
+        let kind = if self.touches { format!("{of}::Touching({kind})") } else { kind };
         let runs = format!("{of}::Only {{ kind: {kind}, joint_space: {} }}", self.joint_space);
         let linearised = match (self.joint_space, has_jacobian) {
             (false, _) => format!("{of}::Nothing"),

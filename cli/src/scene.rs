@@ -63,7 +63,7 @@ impl Scene {
             inputs_vary: any_varies(&inputs) || !start_controllers.is_empty(),
             touches: model.has_rigid_contacts(),
             period: start_controllers.iter().map(Controller::period_s).reduce(f64::min),
-            ..offers(&model, args)
+            ..offers(args)
         };
         let (approach, chosen) = choose(&model, args, &offers);
         let settings = settings(&model, args, &approach);
@@ -144,8 +144,7 @@ pub fn counting_work(model: Model) -> Model {
     Model { counts_work: true, ..model }
 }
 
-/// Joint coordinates are for generated code of mechanisms that have them: which of the two is missing, and what to
-/// leave out.
+/// Joint coordinates are for generated code.
 fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs, approach: &Approach) -> Result<(), Failure> {
     let asks = match args.coordinates {
         Some(_) => "--coordinates joint",
@@ -155,17 +154,12 @@ fn refuse_joint_coordinates(model: &Model, args: &SimulateArgs, approach: &Appro
     if approach.coordinates != Coordinates::Joint {
         return Ok(());
     }
-    let words = match (args.engine(), gyro_codegen::lacks_joint_coordinates(model)) {
-        (_, Some(what)) => {
-            format!("joint coordinates are for mechanisms that have them, and `{}` has {what}", model.name)
-        }
-        (Engine::Assembled, None) => {
-            "runtime-assembled models run in maximal coordinates: for joint coordinates leave out --engine"
-                .to_owned()
-        }
-        (_, None) => return Ok(()),
-    };
-    Err(Failure::Usage(format!("{asks}: {words}")))
+    if args.engine().is_generated() {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "{asks}: runtime-assembled models run in maximal coordinates: for joint coordinates leave out --engine"
+    )))
 }
 
 fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Failure> {
@@ -178,14 +172,13 @@ fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Fa
 }
 
 /// What the engine and the model allow.
-fn offers(model: &Model, args: &SimulateArgs) -> Offers {
+fn offers(args: &SimulateArgs) -> Offers {
     let is_generated = args.engine().is_generated();
-    let joint_space = is_generated && gyro_codegen::lacks_joint_coordinates(model).is_none();
     let epsilon = match args.precision {
         Precision::F32 => f64::from(f32::EPSILON),
         Precision::F64 => f64::EPSILON,
     };
-    Offers { joint_space, derivatives: is_generated, epsilon, ..Offers::ALL }
+    Offers { joint_space: is_generated, derivatives: is_generated, epsilon, ..Offers::ALL }
 }
 
 /// An input that changes a conservative force while it acts does work that the mechanism does not count.

@@ -6,8 +6,6 @@ use std::collections::BTreeSet;
 /// What a mechanism makes of groups.
 #[derive(Clone, Copy, Debug)]
 pub struct Facts {
-    /// Whether joint coordinates describe it.
-    pub joint_coordinates: bool,
     /// Whether its partition goes through joint coordinates.
     pub joint_partition: bool,
     /// Whether an output tells accelerations or multipliers.
@@ -57,11 +55,10 @@ impl Functions {
         self.0.contains(&group)
     }
 
-    /// What is written of these for a mechanism: without joint coordinates accelerations at corrected states are those
-    /// at any state, which outputs may need too; and a partition that goes through joint coordinates needs them.
+    /// What is written of these for a mechanism: where work of loops is counted accelerations at corrected states are
+    /// those at any state, which outputs may need too; and a partition that goes through joint coordinates needs them.
     pub(crate) fn of_mechanism(mut self, facts: Facts) -> Self {
-        let has_own = facts.joint_coordinates && !facts.work_of_loops;
-        if facts.outputs_of_motion || self.has(Group::Corrected) && !has_own {
+        if facts.outputs_of_motion || self.has(Group::Corrected) && facts.work_of_loops {
             self.0.insert(Group::Maximal);
         }
         if facts.outputs_of_multipliers && self.has(Group::JointOutputs) {
@@ -70,13 +67,6 @@ impl Functions {
         }
         if self.has(Group::Partition) && facts.joint_partition {
             self.0.insert(Group::Joint);
-        }
-        if !facts.joint_coordinates {
-            [Group::Joint, Group::Jacobian, Group::ParameterJacobian, Group::Reactions].iter().for_each(
-                |group| {
-                    self.0.remove(group);
-                },
-            );
         }
         self
     }

@@ -74,7 +74,7 @@ use derive::{Observed, Textbook};
 use emit::module;
 use equations::{Equations, Parts, Rotations};
 use groups::Facts;
-use joint_space::{Candidates, Coordinates, JointSpace, obstacle};
+use joint_space::{Candidates, Coordinates, JointSpace};
 use scheduled::Computed;
 use solve::Solution;
 use solve::dependence::Yielding;
@@ -167,12 +167,6 @@ pub fn generate_with(
 ) -> Result<Module, Error> {
     let model = gyro_model::read_with(file_name, text, load).map_err(Error::ModelFile)?;
     generate_model(file_name, &model)
-}
-
-/// What keeps a mechanism from being described in joint coordinates, in words that follow "it has"; `None` if nothing
-/// does.
-pub fn lacks_joint_coordinates(model: &Model) -> Option<String> {
-    obstacle(model)
 }
 
 /// How eq. (17) is solved.
@@ -318,7 +312,6 @@ fn facts(system: &System) -> Facts {
             )
     };
     Facts {
-        joint_coordinates: obstacle(model).is_none(),
         joint_partition: !Partition::covers(system),
         outputs_of_motion: model.outputs.iter().any(tells_motion),
         outputs_of_multipliers: model.outputs.iter().any(tells_multipliers),

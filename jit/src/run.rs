@@ -4,8 +4,8 @@
 use crate::{Compiled, Interpreted, Native};
 use gyro_runner::motion::{
     ByDuals, ByJacobian, COLUMNS, Direct, Examined, Implicit, ImplicitInJoints, ImplicitInJointsByDuals,
-    InClosedForm, InJointsTouching, Kind, Linearise, MotionBuilder, Nothing, Only, Partitioned, Projected,
-    Stabilised, Tree, TreeWithJacobian, WithDuals,
+    InClosedForm, InJoints, Kind, Linearise, MotionBuilder, Nothing, Only, Partitioned, Projected,
+    Stabilised, Touching, Tree, TreeWithJacobian, WithDuals,
 };
 use gyro_runner::protocol::Request;
 use gyro_runner::{Approach, Coordinates, Correction, Event, Failure, Settings, Start, Summary, run_by};
@@ -71,15 +71,15 @@ fn builder<T: Native + Real>(
     }
     let is_implicit = approach.integrator.is_implicit();
     match (approach.coordinates, approach.correction, is_implicit) {
-        (Coordinates::Joint, _, true) if has_jacobian => only(mechanism, runs, ImplicitInJoints),
-        (Coordinates::Joint, _, true) => only(mechanism, runs, ImplicitInJointsByDuals(duals())),
-        (Coordinates::Joint, _, false) => only(mechanism, runs, InJointsTouching),
+        (Coordinates::Joint, _, true) if has_jacobian => only(mechanism, runs, Touching(ImplicitInJoints)),
+        (Coordinates::Joint, _, true) => only(mechanism, runs, Touching(ImplicitInJointsByDuals(duals()))),
+        (Coordinates::Joint, _, false) => only(mechanism, runs, Touching(InJoints)),
         (_, _, true) => only(mechanism, runs, Implicit(duals())),
-        (_, Correction::Partition, _) => only(mechanism, runs, Partitioned),
+        (_, Correction::Partition, _) => only(mechanism, runs, Touching(Partitioned)),
         (_, Correction::ClosedForm, _) => only(mechanism, runs, InClosedForm),
         (_, Correction::MassWeighted, _) => only(mechanism, runs, Projected),
         (_, Correction::Baumgarte(_), _) => only(mechanism, runs, Stabilised),
-        (_, Correction::None, _) => only(mechanism, runs, Direct),
+        (_, Correction::None, _) => only(mechanism, runs, Touching(Direct)),
     }
 }
 

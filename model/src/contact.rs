@@ -25,6 +25,9 @@ pub struct Contact {
     pub reaction: Option<usize>,
     /// Index into [`crate::Model::inputs`] of its force.
     pub input: usize,
+    /// Of a coordinate that joint states do not have, as its joint is cut: the first of three outputs, which are its
+    /// value, its rate and its acceleration.
+    pub seen: Option<usize>,
 }
 
 /// Surfaces of two bodies that may touch at a point, rigid: what each of the pairs of shapes of a

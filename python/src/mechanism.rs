@@ -120,12 +120,6 @@ impl Mechanism {
         self.locked(py).set.clone()
     }
 
-    /// Why there are no joint coordinates, if there are none.
-    #[getter]
-    fn lacks_joint_coordinates(&self) -> Option<String> {
-        gyro_codegen::lacks_joint_coordinates(&self.page)
-    }
-
     /// Names of the numbers of x and of u.
     #[pyo3(name = "_coordinates")]
     fn coordinates(&self, py: Python<'_>) -> PyResult<(Vec<String>, Vec<String>)> {
@@ -440,14 +434,6 @@ impl Mechanism {
     fn ready(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, State>> {
         let mut state = self.locked(py);
         if state.dynamics.is_none() {
-            if let Some(what) = gyro_codegen::lacks_joint_coordinates(&self.page) {
-                let words = format!(
-                    "this is for mechanisms with joint coordinates, and `{}` has {what}: simulate() runs it in maximal \
-                     ones, and run[name] and run.rate(name) have the motion of its joints",
-                    self.page.name
-                );
-                return Err(errors::request(py, &words));
-            }
             let (kernels, page) = (self.kernels.clone(), self.page.clone());
             let compiled = interruptible(py, move |_| kernels.get(&page, &functions(false), Effort::Full))?;
             state.dynamics = Some(Dynamics::new(compiled, &state.model));

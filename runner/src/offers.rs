@@ -87,16 +87,20 @@ impl Offers {
     pub fn refused_method(&self, approach: &Approach) -> Option<String> {
         let words = match (approach.coordinates, approach.correction) {
             _ if self.touches && !self.joint_space => {
-                "rigid stops and friction that sticks need joint coordinates: they are for generated code (--engine \
-                 in-process or generated) of mechanisms that have them"
+                "rigid contacts are for generated code: choose --engine in-process or generated"
             }
-            (Coordinates::Maximal, _) if self.touches => {
-                "rigid stops and friction that sticks need joint coordinates: choose --coordinates joint"
-            }
-            _ if self.touches && approach.integrator.is_implicit() => {
+            (Coordinates::Maximal, _) if self.touches && approach.integrator.is_implicit() => {
                 return Some(format!(
-                    "rigid stops and friction that sticks are for explicit methods: choose {}",
-                    listed(|method| !method.is_implicit())
+                    "{} takes rigid contacts in joint coordinates alone: choose --coordinates joint, or {}",
+                    approach.integrator,
+                    listed(|method| method.is_adaptive() && !method.is_implicit())
+                ));
+            }
+            (Coordinates::Maximal, correction)
+                if self.touches && !matches!(correction, Correction::Partition | Correction::None) =>
+            {
+                return Some(format!(
+                    "with rigid contacts there is no correction {correction}: choose --correction partition or none"
                 ));
             }
             (Coordinates::Joint, _) if !self.joint_space => {

@@ -54,4 +54,6 @@ pub struct Stop {
     pub coefficients: [f64; 2],
     /// Where that reaction begins among the numbers of the outputs.
     pub reaction: Option<usize>,
+    /// Where among these the coordinate, its rate and its acceleration are, if its joint is cut.
+    pub seen: Option<usize>,
 }

@@ -20,12 +20,6 @@ const TOLERANCE: f64 = 1e-9;
 /// The module of a scene, proved, compiled, and what the page has to know to run it.
 pub(super) fn live(scene: &Scene) -> Result<Live, Failure> {
     let model = Model { functions: Some(vec!["solvers".to_owned()]), ..scene.page.clone() };
-    if let Some(what) = gyro_codegen::lacks_joint_coordinates(&model) {
-        let name = &model.name;
-        return Err(Failure::Usage(format!(
-            "--live runs in joint coordinates, and `{name}` has none: it has {what}"
-        )));
-    }
     let spinner = progress::deriving(&model);
     let module = gyro_codegen::generate_model(&scene.page_name, &model)
         .map_err(|e| Failure::Usage(format!("{}: {e}", scene.page_name)))?;

@@ -114,7 +114,6 @@ pub(super) fn are_alike(study: &Study, scene: &Scene) -> bool {
         && model.controllers.is_empty()
         && !model.has_rigid_contacts()
         && model.lines().is_empty()
-        && gyro_codegen::lacks_joint_coordinates(model).is_none()
         && is_explicit
         && is_tree
         && is_constant

@@ -5,7 +5,6 @@ use crate::equations::{Equations, PartitionForm};
 use crate::expr::graph::Graph;
 use crate::expr::rounding::LIKE as ROUNDING;
 use crate::expr::schedule::{Operations, Passes};
-use crate::joint_space::obstacle;
 use crate::repeat::Repetition;
 use crate::scheduled::Computed;
 use crate::simplify::cheapest::{Chosen, Form};
@@ -260,7 +259,6 @@ fn left_out(equations: &Equations) -> Vec<String> {
                 format!("the Jacobian of the joint form ({why})")
             }));
         }
-        None if obstacle(model).is_some() => left_out.push("joint coordinates".into()),
         None => left_out.push("joint coordinates (functions = [\"joint\"] asks for them)".into()),
     }
     let unasked = Group::all().filter(|&group| !equations.functions.has(group));

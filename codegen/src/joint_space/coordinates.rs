@@ -309,14 +309,6 @@ impl Coordinates {
 /// atoms of which the squares sum to one, rows.
 type Derived = (Layout, Values, Vec<LinkKinematics>, WholeAngles, Vec<Vec<ExprId>>, Vec<(usize, ExprId)>);
 
-/// Why joint coordinates do not describe a mechanism, in words that follow "it has"; `None` if they do.
-pub fn obstacle(model: &Model) -> Option<String> {
-    let tree = Tree::of_coordinates(model);
-    let cut = model.contacts.iter().find(|contact| tree.loop_joints.contains(&contact.on.joint))?;
-    let name = &model.joints[cut.on.joint].name;
-    Some(format!("a contact on joint `{name}`, which closes a loop"))
-}
-
 /// The angles of cut joints whose whole turns the state counts: those on which something depends and which are no
 /// angle of the tree. (A sum of angles may be off by a whole turn.)
 fn turns_to_count(system: &mut System, known: &[Determined]) -> Vec<JointCoordinate> {

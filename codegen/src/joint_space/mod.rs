@@ -58,4 +58,4 @@ mod zero_orientation;
 
 pub use candidates::Candidates;
 pub use choose::JointSpace;
-pub use coordinates::{Coordinates, obstacle};
+pub use coordinates::Coordinates;

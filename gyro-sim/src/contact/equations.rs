@@ -1,9 +1,9 @@
 //! Equations of motion with contacts in their phases.
 
 use super::loads::{Acting, Growth, Jam, Loads, size};
-use super::small::{at, plus_product, set, solve, spread};
+use super::small::{at, larger, plus_product, set, solve, spread};
 use super::{Contact, Phase, Role};
-use crate::{Clearance, Correction, Error, Ode, Real};
+use crate::{Clearance, Correction, Error, Jacobian, Ode, Real};
 use core::array::from_fn;
 use core::cell::Cell;
 use core::ops::Range;
@@ -86,6 +86,8 @@ pub struct Contacts<D, T, const N: usize> {
     /// How forces of surfaces that touch at several points were divided among these when phases were chosen: where
     /// accelerations leave that open, it stays so.
     pub(super) split: [T; N],
+    /// What is at the bound of its friction and does not move, as others hold it: its force stays.
+    pub(super) spent: [bool; N],
     /// By how much friction of surfaces that stick may be beyond its bound: more where it is at its bound while nothing
     /// slips, as between bodies that slide down together.
     pub(super) slack: [T; N],
@@ -110,6 +112,9 @@ pub(super) struct Local<T, const N: usize> {
 /// of two.
 pub(super) const LARGE: f64 = 1_099_511_627_776.0;
 
+/// What is smaller than this, in its unit, is differentiated as if it were that large.
+const NEAR: f64 = 1e-3;
+
 impl<D, T: Real, const N: usize> Contacts<D, T, N> {
     pub(super) fn new(dynamics: D, contacts: [Contact<T>; N]) -> Self {
         let (phases, zero) = ([Phase::Free; N], T::constant(0.0));
@@ -124,12 +129,18 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             vague,
             paces,
             split,
+            spent: [false; N],
             slack,
             slowest,
             creep,
             weakest,
             jam: Cell::new(None),
         }
+    }
+
+    /// The equations without contacts.
+    pub fn dynamics(&self) -> &D {
+        &self.dynamics
     }
 
     /// Whether any of the contacts are between surfaces, or along what only the system sees.
@@ -261,7 +272,8 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
     /// The forces of all contacts in their present phases, solved together: what is held is not accelerated, and
     /// friction on what moves has its level under the reactions that all forces make.
     pub(super) fn acting(&self, local: &Local<T, N>, loads: Option<&Loads<T, N>>) -> Acting<T, N> {
-        let held = self.phases.map(Phase::is_held);
+        let is_held = self.phases.map(Phase::is_held);
+        let held = from_fn(|k| is_held[k] && !self.spent[k]);
         let pulls = self.pulls(&local.rates);
         let with_friction;
         let compliance = if self.phases.contains(&Phase::Slides) {
@@ -270,7 +282,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         } else {
             &local.compliance
         };
-        let mut forces = from_fn(|k| if held[k] { self.split[k] } else { T::constant(0.0) });
+        let mut forces = from_fn(|k| if is_held[k] { self.split[k] } else { T::constant(0.0) });
         for (force, kinetic) in forces.iter_mut().zip(self.kinetic_forces()) {
             *force = *force + kinetic;
         }
@@ -427,6 +439,43 @@ where
 
     fn normalise(&self, model: &M, y: &mut D::State) {
         self.dynamics.normalise(model, y);
+    }
+}
+
+/// Where a contact acts, by central differences: what holds it depends on the state too.
+impl<M, D, T: Real, const N: usize> Jacobian<M> for Contacts<D, T, N>
+where
+    D: Forced<M, Scalar = T> + Jacobian<M>,
+{
+    type Matrix = D::Matrix;
+
+    fn jacobian(&self, model: &M, t: T, y: &D::State, dfdy: &mut D::Matrix, dfdt: &mut D::State) {
+        if self.phases.iter().all(|phase| *phase == Phase::Free) {
+            return self.dynamics.jacobian(model, t, y, dfdy, dfdt);
+        }
+        let step = |x: T| T::constant(libm::cbrt(T::EPSILON.to_f64())) * larger(x.abs(), T::constant(NEAR));
+        let [mut there, mut before, mut after] = [y.clone(), y.clone(), y.clone()];
+        let n = y.as_ref().len();
+        for k in 0..n {
+            let x = at(y.as_ref(), k);
+            let [low, high] = [x - step(x), x + step(x)];
+            set(there.as_mut(), k, low);
+            self.derivative(model, t, &there, &mut before);
+            set(there.as_mut(), k, high);
+            self.derivative(model, t, &there, &mut after);
+            set(there.as_mut(), k, x);
+            let slopes = after.as_ref().iter().zip(before.as_ref());
+            for (place, (after, before)) in dfdy.as_mut().iter_mut().skip(k).step_by(n).zip(slopes) {
+                *place = (*after - *before) / (high - low);
+            }
+        }
+        let [low, high] = [t - step(t), t + step(t)];
+        self.derivative(model, low, y, &mut before);
+        self.derivative(model, high, y, &mut after);
+        let slopes = after.as_ref().iter().zip(before.as_ref());
+        for (place, (after, before)) in dfdt.as_mut().iter_mut().zip(slopes) {
+            *place = (*after - *before) / (high - low);
+        }
     }
 }
 

@@ -57,6 +57,9 @@ where
             }
             continue;
         }
+        if equations.spent[k] && phase.is_held() {
+            continue;
+        }
         if contact.role == Role::Gap && phase.is_held() {
             guards[0][k] = forces[k] + equations.weakest;
             continue;

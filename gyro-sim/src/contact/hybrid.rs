@@ -10,7 +10,7 @@ use crate::integrate::Method;
 use crate::solver::Mark;
 use crate::{Control, Correction, Real, Solver, Statistics, Tried, Uncorrected};
 
-/// A motion with contacts, by any method that is explicit.
+/// A motion with contacts, by any method.
 #[derive(Clone, Debug)]
 pub struct Hybrid<D, S, T, A, C, const N: usize> {
     pub(super) solver: Solver<Contacts<D, T, N>, S, T, A, Kept<C>>,

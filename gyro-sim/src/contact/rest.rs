@@ -3,10 +3,10 @@
 use super::cones::{Bound, Cones};
 use super::equations::{Contacts, Forced, Local, bounds};
 use super::guards::size;
-use super::loads::{Acting, Jam};
+use super::loads::{Acting, Jam, Loads};
 use super::resolve::{Hit, ROUNDING, UNMET};
 use super::small::{at, larger, not_below_rounding, plus_product, spread};
-use super::{Error, Phase, Role};
+use super::{Contact, Error, Phase, Role};
 use crate::Real;
 use core::array::from_fn;
 
@@ -16,6 +16,10 @@ const WITHIN: f64 = 1.0 - 1e-9;
 const VAGUE: f64 = 1e-9;
 /// Friction that is at its bound where nothing slips may be beyond it by this part.
 const LOOSE: f64 = 1e-3;
+/// What yields to a force by less than this part of what it would alone is held by others.
+const HELD: f64 = 1e-6;
+/// Friction that changes an acceleration by less than this part of it holds nothing.
+const FEEBLE: f64 = 1e-9;
 /// What comes to rest has less than this part of its velocity left after a step.
 const SLOWING: f64 = 0.9;
 /// So many times what creeps is slow.
@@ -103,6 +107,9 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             return;
         }
         let local = self.local(model, (t, y), held, &mut scratch[0]);
+        let feeble = self.feeble(&local, self.loads(model, (t, y), held).as_ref());
+        let passes = |k: usize| self.contacts[k].role == Role::Seen && !ends[k].is_finite() && feeble[k];
+        let held = &from_fn(|k| held[k] && !passes(k));
         let places = self.places(model, (t, y));
         let is_told = |k: usize| matches!(self.contacts[k].role, Role::Gap | Role::Seen);
         let is_off = |k: usize| held[k] && is_told(k) && ends[k].is_finite();
@@ -192,7 +199,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         let zero = T::constant(0.0);
         let places = self.places(model, (t, y));
         let rests_on = |k: usize| rests.get(k).is_some_and(|rests| *rests);
-        self.split = [zero; N];
+        (self.split, self.spent) = ([zero; N], [false; N]);
         self.phases = from_fn(|k| {
             let (contact, [x, rate]) = (&self.contacts[k], places[k]);
             let is_loaded = contact.slip().is_some_and(|(gap, _)| rests_on(gap)) && contact.acts();
@@ -223,6 +230,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         });
         let local = self.local(model, (t, y), &acting, scratch);
         let loads = self.loads(model, (t, y), &acting);
+        self.pass(&local, loads.as_ref());
         let pulls = self.pulls(&local.rates);
         let bound = |k: usize| match (&self.contacts[k], self.phases[k]) {
             (contact, Phase::Sticks) if contact.slip().is_some() => Bound::Plane(contact.coefficients[1]),
@@ -257,8 +265,21 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         self.largest = larger(self.largest, fastest);
         let [rounding, unmet] = [ROUNDING, UNMET].map(|limit| not_below_rounding::<T>(limit) * self.largest);
         let accelerations = local.accelerations(&forces);
+        let firm: [bool; N] = from_fn(|k| match cones.bounds[k] {
+            Bound::Between([low, high]) => low + self.weakest < forces[k] && forces[k] < high - self.weakest,
+            Bound::Plane(_) => !slides[k],
+            _ => false,
+        });
         for k in 0..N {
             match (self.contacts[k].slip(), cones.bounds[k]) {
+                // What cannot move, as others hold it, goes on pulling as much as it can.
+                (None, Bound::Between(_))
+                    if !firm[k]
+                        && self.contacts[k].levels[1] > zero
+                        && !yields(&local.compliance, k, &firm) =>
+                {
+                    self.spent[k] = true;
+                }
                 (None, Bound::Between([low, _]))
                     if forces[k] <= low + self.weakest && (reached[k] || accelerations[k] > rounding) =>
                 {
@@ -322,6 +343,26 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         }
     }
 
+    /// What friction cannot hold, as a coordinate in the dead centre of a linkage, passes through rest.
+    fn pass(&mut self, local: &Local<T, N>, loads: Option<&Loads<T, N>>) {
+        let feeble = self.feeble(local, loads);
+        for k in 0..N {
+            if self.phases[k] == Phase::Sticks && self.contacts[k].slip().is_none() && feeble[k] {
+                self.phases[k] = if local.bias[k] > T::constant(0.0) { Phase::Up } else { Phase::Down };
+            }
+        }
+    }
+
+    /// Whose friction makes next to no difference to its motion.
+    fn feeble(&self, local: &Local<T, N>, loads: Option<&Loads<T, N>>) -> [bool; N] {
+        let sizes = loads.map_or([T::constant(0.0); N], Loads::sizes);
+        from_fn(|k| {
+            let Contact { levels, coefficients, .. } = self.contacts[k];
+            let slowed = local.compliance[k][k].abs() * (levels[1] + coefficients[1] * sizes[k]);
+            slowed < T::constant(FEEBLE) * local.bias[k].abs()
+        })
+    }
+
     /// A coordinate or a gap is let go this way; surfaces that part rub no longer.
     fn leave(&mut self, k: usize, way: Phase) {
         self.phases[k] = if self.contacts[k].rubs() { way } else { Phase::Free };
@@ -369,7 +410,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
                     note(k, Phase::Sticks, -along);
                 }
                 (Some(_), _) => {}
-                (None, phase) if phase.is_held() => {
+                (None, phase) if phase.is_held() && !self.spent[k] => {
                     let [low, high] = bounds(acting.levels[k], phase);
                     note(k, Phase::Up, (low - self.weakest - forces[k]) * own);
                     note(k, Phase::Down, (forces[k] - high - self.weakest) * own);
@@ -389,6 +430,13 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         }
         worst
     }
+}
+
+/// Whether a force along a contact moves it while these hold.
+fn yields<T: Real, const N: usize>(compliance: &[[T; N]; N], k: usize, firm: &[bool; N]) -> bool {
+    let column: [T; N] = from_fn(|i| compliance[i][k]);
+    let response = spread(compliance, &column.map(|w| -w), firm);
+    plus_product(&column, compliance, &response)[k] > T::constant(HELD) * compliance[k][k]
 }
 
 /// The size of the components of two slips.

@@ -126,11 +126,19 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         let at_upper: [bool; N] = core::array::from_fn(|k| !phases[k].is_held() && is_due(1, k));
         let reached: [bool; N] =
             core::array::from_fn(|k| phases[k].is_held() && (is_due(0, k) || is_due(1, k)));
+        if equations.has_surfaces::<M>() {
+            let fastest = fastest(y.as_ref(), &places) + length.map_or(zero, |h| equations.largest * h);
+            equations.slowest = larger(equations.slowest, rounding(fastest));
+            equations.creep = larger(equations.slowest, T::constant(CREEP) * fastest);
+        }
         // Friction that has brought a coordinate to rest; a jump is none of its doing.
         for (k, contact) in contacts.iter().enumerate() {
             let moves = jumped.is_none() && matches!(phases[k], Phase::Up | Phase::Down);
             let is_it = next.is_some_and(|(next, _)| next.kind == 2 && next.contact == k);
-            if moves && (is_it || guards[2][k] < zero) {
+            // Others come to rest with it where they move together, to rounding.
+            if moves
+                && (is_it || guards[2][k] < zero || at(y.as_ref(), contact.rate).abs() <= equations.slowest)
+            {
                 set(y.as_mut(), contact.rate, zero);
             }
         }
@@ -141,7 +149,9 @@ impl<T: Real, const N: usize> Ledger<T, N> {
                 Role::Seen => matches!(phases[k], Phase::Up | Phase::Down),
                 _ => phases[k] == Phase::Slides,
             };
-            jumped.is_none() && moves && (is_it || guards[2][k] < zero)
+            let stops = is_it || guards[2][k] < zero;
+            let is_slow = contacts[k].role == Role::Seen && places[k][1].abs() <= equations.slowest;
+            jumped.is_none() && moves && (stops || is_slow)
         });
         // What has rested on a stop does not hit it.
         let before: [T; N] = core::array::from_fn(|k| match jumped {
@@ -152,9 +162,6 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         let touched = [&at_lower, &at_upper];
         let hits = self.hits(equations, (y.as_mut(), &before, size), touched, next.map(|(next, _)| next));
         let chosen = if equations.has_surfaces::<M>() {
-            let fastest = fastest(y.as_ref(), &places) + length.map_or(zero, |h| equations.largest * h);
-            equations.slowest = larger(equations.slowest, rounding(fastest));
-            equations.creep = larger(equations.slowest, T::constant(CREEP) * fastest);
             self.touch(equations, (model, t), y, (&hits, [&caught, &reached], next.is_none()), scratch)
         } else {
             self.collide(equations, (model, t), y, &hits, scratch);

@@ -10,7 +10,8 @@ use crate::diagnostics::Related;
 use crate::keys::{CONTACT, CONTACT_SIDE};
 use crate::validate::{Owner, Place};
 use crate::{
-    Contact, Element, Force, ForceKind, Joint, Number, Output, OutputKind, Parameter, Rational, Touching,
+    Contact, Element, Force, ForceKind, Formula, Joint, Model, Number, Output, OutputKind, Parameter,
+    Rational, Seen, Touching, Tree,
 };
 
 /// Reads all contacts: those on joint coordinates, whose inputs come after so many others, and those between bodies,
@@ -200,6 +201,7 @@ fn contact(reader: &mut Reader<'_>, section: &Section<'_>, name: String, input: 
         radius: section.given(reader, "radius"),
         reaction: None,
         input,
+        seen: None,
     }
 }
 
@@ -271,6 +273,27 @@ pub(super) fn loads(
             outputs.push(Output { name: contact.name.clone(), kind });
         }
         contact.reaction = found.or(outputs.len().checked_sub(1));
+    }
+}
+
+/// Has what contacts do to joints that close loops seen: by outputs of these coordinates.
+pub(super) fn watch(model: &mut Model) {
+    let cut = Tree::of_coordinates(model).loop_joints;
+    for index in 0..model.contacts.len() {
+        let Contact { on, ref name, .. } = model.contacts[index];
+        if !cut.contains(&on.joint) {
+            continue;
+        }
+        let [value, rate] = [("coordinate", Seen::Coordinate(on)), ("rate", Seen::Rate(on))]
+            .map(|(what, seen)| Formula::seen(what, seen));
+        let watched = [
+            ("is_at", OutputKind::Formula(value)),
+            ("moves", OutputKind::Formula(rate.clone())),
+            ("moves_rate", OutputKind::Rate(rate)),
+        ];
+        let first = model.outputs.len();
+        model.outputs.extend(watched.map(|(what, kind)| Output { name: format!("{name}_{what}"), kind }));
+        model.contacts[index].seen = Some(first);
     }
 }
 

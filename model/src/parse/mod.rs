@@ -169,6 +169,7 @@ fn check(reader: &mut Reader<'_>, model: &mut Model) {
     reader.add_problems(coordinate_problems(model));
     start::misplaced(reader, model);
     if reader.is_clean() {
+        contacts::watch(model);
         start::check(reader, model);
         reader.add_problems(settings_problems(model));
     }

@@ -10,7 +10,7 @@ use super::select::{INDEPENDENT, extend, outside};
 use super::trees::{Motions, TreeRows};
 use crate::assemble::projection::{Configuration, Scales};
 use crate::kinematics::{Kinematics, value_of};
-use crate::{Model, RowOwner, Tree};
+use crate::{Model, RowOwner};
 
 /// Changes of these directions below this are rounding: poses that are sampled differ by some tenths of a radian.
 const STAYS: f64 = 1e-5;
@@ -58,12 +58,6 @@ impl Poses<'_> {
             motions.with(&turned)
         };
         self.motions.iter().zip(&self.jacobians).zip(&self.at).map(turned).collect()
-    }
-
-    /// Whether no contact is on a joint that closes a loop.
-    pub(super) fn has_joint_coordinates(&self) -> bool {
-        let cut = Tree::of_coordinates(self.model).loop_joints;
-        self.model.contacts.iter().all(|contact| !cut.contains(&contact.on.joint))
     }
 
     fn turns(&self, joint: usize) -> bool {

@@ -145,7 +145,7 @@ fn selected(mut poses: Poses<'_>, is_exact: bool) -> (Vec<RedundantRow>, Selecti
     let redundant = redundant.zip(moves).map(|((row, (shared_with, loads)), moves)| {
         let is_joint = |owner: &RowOwner| matches!(owner, RowOwner::Joint(_));
         let of_joints = is_joint(&row.owner) && shared_with.iter().all(is_joint);
-        let stays = is_exact && moves && of_joints && poses.has_joint_coordinates();
+        let stays = is_exact && moves && of_joints;
         RedundantRow { row, axes: axes(row), shared_with, loads, stays }
     });
     let redundant = redundant.collect();

@@ -6,11 +6,12 @@
 //! sees more than one piece.
 
 use super::course::Course;
-use super::lens::{Lens, Moving, MovingInputs};
+use super::lens::{Lens, Moving, MovingInputs, Pushed};
 use crate::Input;
 use crate::touch::Touch;
 use gyro_sim::contact::{Forced, joint_accelerations};
-use gyro_sim::{Clearance, Correction, Error, Jacobian, Joint, JointSpace, Mechanism, Ode, Scalar};
+use gyro_sim::{Clearance, Correction, Error, Jacobian, JointSpace, Mechanism, Ode, Scalar};
+use std::array::from_fn;
 use std::cell::{OnceCell, Ref, RefCell};
 use std::ops::Range;
 use std::rc::Rc;
@@ -30,8 +31,21 @@ pub(super) struct Feed<M: Mechanism> {
     /// Of contacts, the inputs that are their forces, and where the reactions of their friction are among the outputs.
     forces: Vec<usize>,
     reactions: Vec<Option<usize>>,
-    /// Of surfaces, where their numbers are among the outputs.
-    surfaces: Vec<Option<[usize; 7]>>,
+    /// What is to be told of each contact.
+    told: Vec<Told>,
+}
+
+/// Where what is told of a contact is.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Told {
+    /// In the state, or with the first force of the same surfaces.
+    Elsewhere,
+    /// Among the outputs, from here on: a coordinate, its rate and its acceleration.
+    Coordinate(usize),
+    /// In the joint state: a coordinate, and its rate; and of an angle where its turn reference is in the maximal one.
+    InJoints([usize; 2], Option<usize>),
+    /// Among the outputs, of surfaces.
+    Surfaces([usize; 7]),
 }
 
 /// What an input is until the next knot.
@@ -92,17 +106,17 @@ impl<L, M: Mechanism> Fed<L, M> {
 
     /// From now on the inputs follow their course, in a copy of the mechanism.
     pub(super) fn follow(&mut self, mechanism: M) {
-        self.force(mechanism, &[]);
+        self.force(mechanism, &[], Vec::new());
     }
 
     /// From now on these inputs are forces of contacts, set in a copy of the mechanism.
-    pub(super) fn force(&mut self, mechanism: M, touches: &[Touch]) {
+    pub(super) fn force(&mut self, mechanism: M, touches: &[Touch], told: Vec<Told>) {
         let feed = Feed {
             mechanism: RefCell::new(mechanism),
             pieces: RefCell::default(),
             forces: touches.iter().flat_map(Touch::inputs).copied().collect(),
             reactions: touches.iter().flat_map(reactions).collect(),
-            surfaces: touches.iter().flat_map(surfaces).collect(),
+            told,
         };
         // A motion is begun once.
         let _ = self.feed.set(feed);
@@ -157,46 +171,74 @@ fn reactions(touch: &Touch) -> Vec<Option<usize>> {
     }
 }
 
-/// Of the first force of surfaces where the numbers of all three are.
-fn surfaces(touch: &Touch) -> Vec<Option<[usize; 7]>> {
-    match touch {
-        Touch::Stop(_) => vec![None],
-        Touch::Surfaces(surfaces) => vec![Some(surfaces.outputs), None, None],
+impl<L: Lens<M>, M: JointSpace> Fed<L, M> {
+    /// The outputs under these forces.
+    fn outputs(&self, t: M::Scalar, x: &L::State, forces: &[M::Scalar]) -> Option<M::Outputs> {
+        let mechanism = self.feed.get()?.under(t, forces);
+        let (mut y, mut outputs) = (mechanism.start(), mechanism.buffers().outputs);
+        self.lens.show(&mechanism, t, x, &mut y);
+        mechanism.outputs(t, &y, &mut outputs);
+        Some(outputs)
+    }
+
+    /// The joint state, and u̇ at its place, under these forces.
+    fn in_joints(&self, t: M::Scalar, x: &L::State, forces: &[M::Scalar]) -> Option<[M::Joints; 2]> {
+        let mechanism = self.feed.get()?.under(t, forces);
+        let (mut y, mut joints) = (mechanism.start(), mechanism.joint_start());
+        self.lens.show(&mechanism, t, x, &mut y);
+        for told in &self.feed.get()?.told {
+            // Angles are those that are nearest to what is given.
+            if let Told::InJoints([place, _], Some(turn)) = *told {
+                joints.as_mut()[place] = y.as_ref()[turn];
+            }
+        }
+        mechanism.to_joints(t, &y, &mut joints);
+        let mut slopes = joints.clone();
+        joint_accelerations(&*mechanism, t, &joints, &mut slopes);
+        Some([joints, slopes])
     }
 }
 
-impl<M: JointSpace<Joints: 'static> + 'static> Forced<M> for Fed<Joint, M> {
+impl<L: Pushed<M>, M: JointSpace> Forced<M> for Fed<L, M> {
     const HAS_REACTIONS: bool = true;
     const HAS_SURFACES: bool = true;
 
-    fn seen(&self, _: &M, t: M::Scalar, x: &M::Joints, forces: &[M::Scalar], out: &mut [[M::Scalar; 3]]) {
-        let Some(feed) = self.feed.get() else { return };
-        let mechanism = feed.under(t, forces);
-        let (mut y, mut outputs) = (mechanism.start(), mechanism.buffers().outputs);
-        mechanism.to_maximal(t, x, &mut y);
-        mechanism.outputs(t, &y, &mut outputs);
-        for (k, places) in feed.surfaces.iter().enumerate() {
-            if let (Some(places), Some([gap, along, across])) = (places, out.get_mut(k..k + 3)) {
-                let zero = M::Scalar::constant(0.0);
-                let [x, rate, second, slip, slip_rate, other, other_rate] =
-                    places.map(|place| outputs.as_ref()[place]);
-                (*gap, *along, *across) =
-                    ([x, rate, second], [zero, slip, slip_rate], [zero, other, other_rate]);
+    fn seen(&self, _: &M, t: M::Scalar, x: &L::State, forces: &[M::Scalar], out: &mut [[M::Scalar; 3]]) {
+        let told = self.feed.get().map_or(&[][..], |feed| &feed.told);
+        let is_output = |told: &Told| matches!(told, Told::Coordinate(_) | Told::Surfaces(_));
+        let outputs = told.iter().any(is_output).then(|| self.outputs(t, x, forces)).flatten();
+        let output =
+            |place: usize| outputs.as_ref().map_or(M::Scalar::constant(0.0), |all| all.as_ref()[place]);
+        let joints = told.iter().any(|told| matches!(told, Told::InJoints(..)));
+        let joints = joints.then(|| self.in_joints(t, x, forces)).flatten();
+        for (k, told) in told.iter().enumerate() {
+            match (*told, out.get_mut(k..)) {
+                (Told::Coordinate(place), Some([own, ..])) => *own = from_fn(|i| output(place + i)),
+                (Told::InJoints([place, rate], _), Some([own, ..])) => {
+                    if let Some([x, slopes]) = &joints {
+                        *own = [x.as_ref()[place], x.as_ref()[rate], slopes.as_ref()[rate]];
+                    }
+                }
+                (Told::Surfaces(places), Some([gap, along, across, ..])) => {
+                    let zero = M::Scalar::constant(0.0);
+                    let [x, rate, second, slip, slip_rate, other, other_rate] = places.map(output);
+                    (*gap, *along, *across) =
+                        ([x, rate, second], [zero, slip, slip_rate], [zero, other, other_rate]);
+                }
+                _ => {}
             }
         }
     }
 
     fn rates(&self, mechanism: &M) -> Range<usize> {
-        let layout = mechanism.joint_layout();
-        let n = layout.n_coordinates();
-        n..n + layout.n_rates()
+        self.lens.rates(mechanism)
     }
 
     fn work(&self, mechanism: &M) -> Option<usize> {
-        Some(Forced::<M>::rates(self, mechanism).end)
+        self.lens.work(mechanism)
     }
 
-    fn forced(&self, mechanism: &M, t: M::Scalar, x: &M::Joints, forces: &[M::Scalar], dx: &mut M::Joints) {
+    fn forced(&self, mechanism: &M, t: M::Scalar, x: &L::State, forces: &[M::Scalar], dx: &mut L::State) {
         let Some(feed) = self.feed.get() else { return self.derivative(mechanism, t, x, dx) };
         let mechanism = feed.under(t, forces);
         self.lens.derivative(&*mechanism, t, x, dx);
@@ -206,29 +248,18 @@ impl<M: JointSpace<Joints: 'static> + 'static> Forced<M> for Fed<Joint, M> {
         &self,
         mechanism: &M,
         t: M::Scalar,
-        x: &M::Joints,
+        x: &L::State,
         forces: &[M::Scalar],
-        dx: &mut M::Joints,
+        dx: &mut L::State,
     ) {
         match self.feed.get() {
-            None => joint_accelerations(mechanism, t, x, dx),
-            Some(feed) => joint_accelerations(&*feed.under(t, forces), t, x, dx),
+            None => self.lens.accelerate(mechanism, t, x, dx),
+            Some(feed) => self.lens.accelerate(&*feed.under(t, forces), t, x, dx),
         }
     }
 
-    fn reactions(
-        &self,
-        _: &M,
-        t: M::Scalar,
-        x: &M::Joints,
-        forces: &[M::Scalar],
-        out: &mut [[M::Scalar; 3]],
-    ) {
-        let Some(feed) = self.feed.get() else { return };
-        let mechanism = feed.under(t, forces);
-        let (mut y, mut outputs) = (mechanism.start(), mechanism.buffers().outputs);
-        mechanism.to_maximal(t, x, &mut y);
-        mechanism.outputs(t, &y, &mut outputs);
+    fn reactions(&self, _: &M, t: M::Scalar, x: &L::State, forces: &[M::Scalar], out: &mut [[M::Scalar; 3]]) {
+        let (Some(feed), Some(outputs)) = (self.feed.get(), self.outputs(t, x, forces)) else { return };
         for (out, place) in out.iter_mut().zip(&feed.reactions) {
             if let Some(force) = place.and_then(|place| outputs.as_ref().get(place..place + 3)) {
                 out.copy_from_slice(force);

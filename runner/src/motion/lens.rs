@@ -1,11 +1,13 @@
 //! The equations that are integrated, and the maximal state as seen through each of them.
 
 use super::contract::COLUMNS;
+use gyro_sim::contact::joint_accelerations;
 use gyro_sim::{
     ByDuals, Dual, Dynamics, Exact, Jacobian, Joint, JointJacobian, JointPlace, JointSpace, Mechanism, Ode,
     Scalar,
 };
 use std::fmt::Debug;
+use std::ops::Range;
 
 /// The joint state of a maximal one, its angles nearest to given ones: one number for each coordinate, joint after
 /// joint.
@@ -56,6 +58,19 @@ pub(super) trait Lens<M: Mechanism>: Ode<M, Scalar = M::Scalar, State: 'static> 
     fn set_input(&mut self, _index: usize, _value: f64) {}
 }
 
+/// Equations that forces of contacts push.
+pub(super) trait Pushed<M: Mechanism>: Lens<M> {
+    /// Whether their state is the joint state.
+    const IN_JOINTS: bool;
+
+    /// Where the rates stand in the state.
+    fn rates(&self, mechanism: &M) -> Range<usize>;
+    /// Where the work stands in the state.
+    fn work(&self, mechanism: &M) -> Option<usize>;
+    /// Writes the slopes of the rates; all else may be anything.
+    fn accelerate(&self, mechanism: &M, t: M::Scalar, y: &Self::State, dy: &mut Self::State);
+}
+
 fn copy<M: Mechanism>(from: &M::State, to: &mut M::State) {
     to.as_mut().copy_from_slice(from.as_ref());
 }
@@ -88,6 +103,21 @@ impl<M: Mechanism<State: 'static> + 'static> Lens<M> for Slopes<M> {
     }
 }
 
+impl<M: Mechanism<State: 'static> + 'static> Pushed<M> for Slopes<M> {
+    const IN_JOINTS: bool = false;
+
+    fn rates(&self, mechanism: &M) -> Range<usize> {
+        let n = mechanism.description().bodies.len();
+        7 * n..13 * n
+    }
+    fn work(&self, mechanism: &M) -> Option<usize> {
+        mechanism.description().work()
+    }
+    fn accelerate(&self, mechanism: &M, t: M::Scalar, y: &M::State, dy: &mut M::State) {
+        self.derivative(mechanism, t, y, dy);
+    }
+}
+
 /// Maximal coordinates, with a Jacobian by dual numbers.
 type Duals<D, T> = ByDuals<Exact, D, <D as Mechanism>::State, Vec<T>, COLUMNS>;
 
@@ -109,6 +139,31 @@ impl<M: JointSpace<Joints: 'static> + 'static> Lens<M> for Joint {
         mechanism.to_maximal(t, from, to);
     }
 }
+
+macro_rules! pushed_in_joints {
+    ($([$($of:tt)*] $lens:ty),*) => {$(
+        impl<$($of)*> Pushed<M> for $lens
+        where
+            Self: Lens<M> + Ode<M, State = M::Joints>,
+            M: JointSpace,
+        {
+            const IN_JOINTS: bool = true;
+
+            fn rates(&self, mechanism: &M) -> Range<usize> {
+                let n = mechanism.joint_layout().n_coordinates();
+                n..n + mechanism.joint_layout().n_rates()
+            }
+            fn work(&self, mechanism: &M) -> Option<usize> {
+                Some(Pushed::<M>::rates(self, mechanism).end)
+            }
+            fn accelerate(&self, mechanism: &M, t: M::Scalar, x: &M::Joints, dx: &mut M::Joints) {
+                joint_accelerations(mechanism, t, x, dx);
+            }
+        }
+    )*};
+}
+
+pushed_in_joints!([M] Joint, [M, D: JointSpace] JointDuals<D, M::Scalar>);
 
 /// Joint coordinates, with a Jacobian by dual numbers.
 type JointDuals<D, T> = ByDuals<Joint, D, <D as JointSpace>::Joints, Vec<T>, COLUMNS>;

@@ -23,6 +23,6 @@ pub use independent::Closing;
 pub use lens::joints_near;
 pub use linearising::{ByDuals, ByJacobian, Examined, Linearise, Nothing};
 pub use single::{
-    Direct, Implicit, ImplicitInJoints, ImplicitInJointsByDuals, InClosedForm, InJoints, InJointsTouching,
-    Kind, Only, Partitioned, Projected, Stabilised,
+    Direct, Implicit, ImplicitInJoints, ImplicitInJointsByDuals, InClosedForm, InJoints, Kind, Only,
+    Partitioned, Projected, Stabilised, Touched, Touching,
 };

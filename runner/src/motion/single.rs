@@ -6,7 +6,7 @@ use super::contract::{Begun, COLUMNS, MotionBuilder, not_touching};
 use super::correction::{Boxed, partitioning, watched, weighted};
 use super::lens::{Slopes, joint_duals};
 use super::moving::{adaptive, explicit};
-use super::touching::touching;
+use super::touching::{touching, touching_by};
 use crate::approach::{Approach, Coordinates, Correction as Keeping};
 use crate::offers::Offers;
 use crate::touch::Touch;
@@ -197,24 +197,82 @@ impl<M: Partition<Scalar: Real> + JointSpace + 'static> Kind<M> for InJoints {
     }
 }
 
-/// Joint coordinates, with rigid stops and friction that sticks where there are any.
+/// The same kind of run, with rigid contacts where there are any.
 #[derive(Clone, Copy, Debug)]
-pub struct InJointsTouching;
+pub struct Touching<K>(pub K);
 
-impl<M: Partition<Scalar: Real> + JointSpace + Clone + 'static> Kind<M> for InJointsTouching {
+/// A kind of run that may have rigid contacts.
+pub trait Touched<M: Partition<Scalar: Real>>: Kind<M> {
+    /// As [`Kind::begin`], with some contacts.
+    ///
+    /// # Errors
+    /// What the mechanism lacks for this approach.
+    fn touch(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M>;
+}
+
+impl<M: Partition<Scalar: Real>, K: Touched<M>> Kind<M> for Touching<K> {
+    const IS_IMPLICIT: bool = K::IS_IMPLICIT;
     const TOUCHES: bool = true;
-    const COORDINATES: Coordinates = Coordinates::Joint;
+    const COORDINATES: Coordinates = K::COORDINATES;
+
+    fn makes(&self, correction: Keeping) -> bool {
+        self.0.makes(correction)
+    }
 
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
-        if contacts.is_empty() {
-            return InJoints.begin(mechanism, approach, y, contacts);
+        match contacts.is_empty() {
+            true => self.0.begin(mechanism, approach, y, contacts),
+            false => self.0.touch(mechanism, approach, y, contacts),
         }
-        let (x, closing, approach) = in_joints(mechanism, approach, y)?;
-        touching(mechanism, closing, &approach, &x, contacts)
     }
 
     fn joint_layout<'a>(&self, mechanism: &'a M) -> Option<&'a JointLayout<'a>> {
-        Some(mechanism.joint_layout())
+        self.0.joint_layout(mechanism)
+    }
+}
+
+impl<M> Touched<M> for Partitioned
+where
+    M: Partition<Scalar: Real> + CorrectedDynamics + JointSpace + Clone + 'static,
+{
+    fn touch(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        touching((mechanism, Slopes::of(Corrected)), partitioning(mechanism, y), approach, y, contacts)
+    }
+}
+
+impl<M> Touched<M> for Direct
+where
+    M: Partition<Scalar: Real> + Dynamics + JointSpace + Clone + 'static,
+{
+    fn touch(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        touching((mechanism, Slopes::of(Exact)), watched(mechanism), approach, y, contacts)
+    }
+}
+
+impl<M: Partition<Scalar: Real> + JointSpace + Clone + 'static> Touched<M> for InJoints {
+    fn touch(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        let (x, closing, approach) = in_joints(mechanism, approach, y)?;
+        touching((mechanism, Joint), closing, &approach, &x, contacts)
+    }
+}
+
+impl<M: Partition<Scalar: Real> + JointJacobian + Clone + 'static> Touched<M> for ImplicitInJoints {
+    fn touch(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        let (x, closing, approach) = in_joints(mechanism, approach, y)?;
+        let method = Rodas4::new(&x, mechanism.jacobian_buffers().jacobian);
+        touching_by((mechanism, Joint), method, closing, &approach, &x, contacts)
+    }
+}
+
+impl<M, D> Touched<M> for ImplicitInJointsByDuals<D>
+where
+    M: Partition<Scalar: Real> + JointSpace + Clone + 'static,
+    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Clone + 'static,
+{
+    fn touch(&self, mechanism: &M, approach: &Approach, y: &M::State, contacts: &[Touch]) -> Begun<M> {
+        let (x, closing, approach) = in_joints(mechanism, approach, y)?;
+        let method = Rodas4::new(&x, vec![M::Scalar::constant(0.0); square(x.as_ref())]);
+        touching_by((mechanism, joint_duals(&self.0)), method, closing, &approach, &x, contacts)
     }
 }
 

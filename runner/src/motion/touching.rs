@@ -3,88 +3,117 @@
 use super::attempt::{Look, Shown};
 use super::contract::{Begun, Motion};
 use super::course::Course;
-use super::feed::{Around, Fed};
+use super::feed::{Around, Fed, Told};
 use super::kink::struck;
-use super::lens::Lens;
+use super::lens::Pushed;
 use super::moving::control;
 use crate::approach::Approach;
 use crate::touch::{Stop, Surfaces, Touch};
 use crate::watch::What;
 use gyro_sim::contact::{self, Contact, Contacts, Hybrid, Phase, Restitution};
 use gyro_sim::integrate::Method;
-use gyro_sim::{Correction, Error, Joint, JointPlace, JointSpace, Real, Scalar, Statistics, by_method};
+use gyro_sim::{
+    Correction, Error, JointPlace, JointSpace, Mechanism, Ode, Real, Scalar, Statistics, by_method,
+};
 
 /// The contacts of a run; those that it does not have do nothing. Surfaces have three at each point.
 const FEW: usize = 8;
 const MANY: usize = 96;
 
-type Touching<M, A, C, const N: usize> =
-    Hybrid<Fed<Joint, M>, <M as JointSpace>::Joints, <M as gyro_sim::Mechanism>::Scalar, A, Around<C, M>, N>;
+type Touching<M, L, A, C, const N: usize> =
+    Hybrid<Fed<L, M>, <L as Ode<M>>::State, <M as Mechanism>::Scalar, A, Around<C, M>, N>;
 
-/// A motion with contacts from a joint state on.
-pub(super) fn touching<M, C>(
-    mechanism: &M,
+/// A motion with contacts from a state on, by explicit methods.
+pub(super) fn touching<M, L, C>(
+    (mechanism, lens): (&M, L),
     correction: C,
     approach: &Approach,
-    x: &M::Joints,
+    x: &L::State,
     touches: &[Touch],
 ) -> Begun<M>
 where
-    M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
-    C: Correction<Joint, M> + 'static,
+    M: JointSpace<Scalar: Real> + Clone + 'static,
+    L: Pushed<M>,
+    C: Correction<L, M> + 'static,
 {
     let count = touches.iter().map(|touch| touch.inputs().len()).sum::<usize>();
-    if count <= FEW {
-        return with::<M, C, FEW>(mechanism, correction, approach, x, touches);
+    if count <= FEW && L::IN_JOINTS {
+        return with::<M, L, C, FEW>((mechanism, lens), correction, approach, x, touches);
     }
-    with::<M, C, MANY>(mechanism, correction, approach, x, touches)
+    with::<M, L, C, MANY>((mechanism, lens), correction, approach, x, touches)
 }
 
 /// With room for so many.
-fn with<M, C, const N: usize>(
-    mechanism: &M,
+fn with<M, L, C, const N: usize>(
+    (mechanism, lens): (&M, L),
     correction: C,
     approach: &Approach,
-    x: &M::Joints,
+    x: &L::State,
     touches: &[Touch],
 ) -> Begun<M>
 where
-    M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
-    C: Correction<Joint, M> + 'static,
+    M: JointSpace<Scalar: Real> + Clone + 'static,
+    L: Pushed<M>,
+    C: Correction<L, M> + 'static,
 {
+    let (by, from) = ((mechanism, lens), (approach, x));
     Ok(by_method!(
         approach.integrator,
-        fixed A => fixed::<M, _, C, N>(begin(mechanism, A::new(x), correction, (approach, x), touches)?, owners(touches)),
-        adaptive A => adaptive::<M, _, C, N>(begin(mechanism, A::new(x), correction, (approach, x), touches)?, owners(touches)),
+        fixed A => fixed::<M, L, _, C, N>(begin(by, A::new(x), correction, from, touches)?, owners(touches)),
+        adaptive A => adaptive::<M, L, _, C, N>(begin(by, A::new(x), correction, from, touches)?, owners(touches)),
         implicit => return Err(super::contract::NOT_TOUCHING.to_owned()),
     ))
 }
 
-fn begin<M, A, C, const N: usize>(
-    mechanism: &M,
+/// The same by an implicit method.
+pub(super) fn touching_by<M, L, A, C>(
+    by: (&M, L),
     method: A,
     correction: C,
-    (approach, x): (&Approach, &M::Joints),
+    approach: &Approach,
+    x: &L::State,
     touches: &[Touch],
-) -> Result<Touching<M, A, C, N>, String>
+) -> Begun<M>
 where
-    M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
-    A: Method<Contacts<Fed<Joint, M>, M::Scalar, N>, M> + 'static,
-    C: Correction<Joint, M> + 'static,
+    M: JointSpace<Scalar: Real> + Clone + 'static,
+    L: Pushed<M>,
+    A: Method<Contacts<Fed<L, M>, M::Scalar, MANY>, M> + 'static,
+    C: Correction<L, M> + 'static,
+{
+    let hybrid = begin(by, method, correction, (approach, x), touches)?;
+    Ok(adaptive::<M, L, A, C, MANY>(hybrid, owners(touches)))
+}
+
+fn begin<M, L, A, C, const N: usize>(
+    (mechanism, lens): (&M, L),
+    method: A,
+    correction: C,
+    (approach, x): (&Approach, &L::State),
+    touches: &[Touch],
+) -> Result<Touching<M, L, A, C, N>, String>
+where
+    M: JointSpace<Scalar: Real> + Clone + 'static,
+    L: Pushed<M>,
+    A: Method<Contacts<Fed<L, M>, M::Scalar, N>, M> + 'static,
+    C: Correction<L, M> + 'static,
 {
     let mut contacts = [Contact::new(0, 0); N];
-    let mut place = 0;
+    let mut told = Vec::new();
     for touch in touches {
-        let own = match touch {
-            Touch::Stop(stop) => vec![contact(mechanism, stop)?],
-            Touch::Surfaces(surfaces) => self::surfaces(place, surfaces)?,
+        let place = told.len();
+        let (own, of_own) = match touch {
+            Touch::Stop(stop) => stopped::<M, L>(mechanism, stop)?,
+            Touch::Surfaces(one) => {
+                let told_of = vec![Told::Surfaces(one.outputs), Told::Elsewhere, Told::Elsewhere];
+                (surfaces(place, one)?, told_of)
+            }
         };
         let room = contacts.get_mut(place..place + own.len()).ok_or_else(too_many::<N>)?;
         room.copy_from_slice(&own);
-        place += own.len();
+        told.extend(of_own);
     }
-    let mut equations = Fed::of(Joint);
-    equations.force(mechanism.clone(), touches);
+    let mut equations = Fed::of(lens);
+    equations.force(mechanism.clone(), touches, told);
     let zero = Scalar::constant(0.0);
     let correction = equations.corrected(correction);
     let hybrid = Hybrid::with_correction(equations, contacts, method, correction, zero, x);
@@ -92,30 +121,38 @@ where
 }
 
 /// In steps of fixed length.
-fn fixed<M, A, C, const N: usize>(hybrid: Touching<M, A, C, N>, owners: Vec<usize>) -> Box<dyn Motion<M>>
+fn fixed<M, L, A, C, const N: usize>(
+    hybrid: Touching<M, L, A, C, N>,
+    owners: Vec<usize>,
+) -> Box<dyn Motion<M>>
 where
-    M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
-    A: Method<Contacts<Fed<Joint, M>, M::Scalar, N>, M> + 'static,
-    C: Correction<Joint, M> + 'static,
+    M: JointSpace<Scalar: Real> + Clone + 'static,
+    L: Pushed<M>,
+    A: Method<Contacts<Fed<L, M>, M::Scalar, N>, M> + 'static,
+    C: Correction<L, M> + 'static,
 {
     // It has no error estimate: one step.
-    let towards: Towards<M, A, C, N> =
+    let towards: Towards<M, L, A, C, N> =
         |hybrid, mechanism, t_end, _| hybrid.move_by(mechanism, t_end - hybrid.time());
     Box::new(Contacting { hybrid, towards, course: None, owners })
 }
 
 /// Under error control.
-fn adaptive<M, A, C, const N: usize>(hybrid: Touching<M, A, C, N>, owners: Vec<usize>) -> Box<dyn Motion<M>>
+fn adaptive<M, L, A, C, const N: usize>(
+    hybrid: Touching<M, L, A, C, N>,
+    owners: Vec<usize>,
+) -> Box<dyn Motion<M>>
 where
-    M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
-    A: Method<Contacts<Fed<Joint, M>, M::Scalar, N>, M> + 'static,
-    C: Correction<Joint, M> + 'static,
+    M: JointSpace<Scalar: Real> + Clone + 'static,
+    L: Pushed<M>,
+    A: Method<Contacts<Fed<L, M>, M::Scalar, N>, M> + 'static,
+    C: Correction<L, M> + 'static,
 {
-    let towards: Towards<M, A, C, N> = |hybrid, mechanism, t_end, look| {
+    let towards: Towards<M, L, A, C, N> = |hybrid, mechanism, t_end, look| {
         let mut x = hybrid.state().clone();
         let watched = hybrid.move_towards(mechanism, t_end, |tried| {
-            let show = |_: &Contacts<Fed<Joint, M>, M::Scalar, N>, t, x: &M::Joints, y: &mut M::State| {
-                Joint.show(mechanism, t, x, y);
+            let show = |equations: &Contacts<Fed<L, M>, M::Scalar, N>, t, x: &L::State, y: &mut M::State| {
+                equations.dynamics().lens.show(mechanism, t, x, y);
             };
             look(&mut Shown { tried, x: &mut x, show }).map(Scalar::constant)
         });
@@ -125,10 +162,10 @@ where
 }
 
 /// One step, not beyond a time.
-type Towards<M, A, C, const N: usize> = fn(
-    &mut Touching<M, A, C, N>,
+type Towards<M, L, A, C, const N: usize> = fn(
+    &mut Touching<M, L, A, C, N>,
     &M,
-    <M as gyro_sim::Mechanism>::Scalar,
+    <M as Mechanism>::Scalar,
     &mut Look<'_, M>,
 ) -> Result<(), contact::Error>;
 
@@ -151,49 +188,72 @@ fn surfaces<T: Real>(place: usize, surfaces: &Surfaces) -> Result<Vec<Contact<T>
 
 const NO_CONTACT: &str = "the numbers of a contact make none";
 
-/// A contact along a coordinate of the joint state.
-fn contact<M: JointSpace<Scalar: Real>>(mechanism: &M, touch: &Stop) -> Result<Contact<M::Scalar>, String> {
+/// A contact along a coordinate, and where what is told of it is.
+fn stopped<M, L>(mechanism: &M, stop: &Stop) -> Result<(Vec<Contact<M::Scalar>>, Vec<Told>), String>
+where
+    M: JointSpace<Scalar: Real>,
+    L: Pushed<M>,
+{
+    let (contact, told) = match (stop.seen, L::IN_JOINTS) {
+        (Some(place), _) => (Contact::seen(), Told::Coordinate(place)),
+        (None, true) => {
+            let [coordinate, rate] = place(mechanism, stop)?;
+            (Contact::new(coordinate, rate), Told::Elsewhere)
+        }
+        (None, false) => (Contact::seen(), Told::InJoints(place(mechanism, stop)?, turn(mechanism, stop))),
+    };
+    let constant = |x: f64| M::Scalar::constant(x);
+    let [levels, coefficients] = [stop.levels, stop.coefficients].map(|pair| pair.map(constant));
+    let contact = contact
+        .with_stops(stop.ends.map(constant), constant(stop.restitution))
+        .and_then(|contact| contact.with_friction(levels[0], levels[1]))
+        .and_then(|contact| contact.with_loaded_friction(coefficients[0], coefficients[1]));
+    Ok((vec![contact.ok_or(NO_CONTACT)?], vec![told]))
+}
+
+/// Where the turn reference of a stop's coordinate is in the maximal state.
+fn turn<M: Mechanism>(mechanism: &M, stop: &Stop) -> Option<usize> {
+    let description = mechanism.description();
+    let reading = description.reading(stop.on.0, stop.on.1)?;
+    let places = description.turn_references;
+    let index = places.iter().position(|place| usize::from(*place) == reading)?;
+    Some(mechanism.start().as_ref().len() - places.len() + index)
+}
+
+/// Where the coordinate of a stop and its rate are in the joint state.
+fn place<M: JointSpace>(mechanism: &M, stop: &Stop) -> Result<[usize; 2], String> {
     let layout = mechanism.joint_layout();
     let (mut coordinate, mut rate) = (0, layout.n_coordinates());
     for place in layout.places {
         if let JointPlace::Scalar { joint, coordinate: own } = *place
-            && (usize::from(joint), usize::from(own)) == touch.on
+            && (usize::from(joint), usize::from(own)) == stop.on
         {
-            let constant = |x: f64| M::Scalar::constant(x);
-            let contact = Contact::new(coordinate, rate)
-                .with_stops(touch.ends.map(constant), constant(touch.restitution))
-                .and_then(|contact| {
-                    contact.with_friction(constant(touch.levels[0]), constant(touch.levels[1]))
-                })
-                .and_then(|contact| {
-                    let [kinetic, at_rest] = touch.coefficients.map(constant);
-                    contact.with_loaded_friction(kinetic, at_rest)
-                });
-            return contact.ok_or_else(|| NO_CONTACT.to_owned());
+            return Ok([coordinate, rate]);
         }
         coordinate += place.n_coordinates();
         rate += place.n_rates();
     }
-    let joint = mechanism.description().joints.get(touch.on.0).map_or("", |joint| joint.name);
+    let joint = mechanism.description().joints.get(stop.on.0).map_or("", |joint| joint.name);
     Err(format!(
         "a rigid stop or friction that sticks is on joint `{joint}`, whose coordinate a coupler or a driver determines: put it \
          on the joint that moves freely"
     ))
 }
 
-struct Contacting<M: JointSpace, A, C, const N: usize> {
-    hybrid: Touching<M, A, C, N>,
-    towards: Towards<M, A, C, N>,
+struct Contacting<M: JointSpace, L: Pushed<M>, A, C, const N: usize> {
+    hybrid: Touching<M, L, A, C, N>,
+    towards: Towards<M, L, A, C, N>,
     course: Option<Course>,
     /// Of which of the run's contacts each is.
     owners: Vec<usize>,
 }
 
-impl<M, A, C, const N: usize> Motion<M> for Contacting<M, A, C, N>
+impl<M, L, A, C, const N: usize> Motion<M> for Contacting<M, L, A, C, N>
 where
-    M: JointSpace<Scalar: Real, Joints: 'static> + Clone + 'static,
-    A: Method<Contacts<Fed<Joint, M>, M::Scalar, N>, M>,
-    C: Correction<Joint, M>,
+    M: JointSpace<Scalar: Real> + Clone + 'static,
+    L: Pushed<M>,
+    A: Method<Contacts<Fed<L, M>, M::Scalar, N>, M>,
+    C: Correction<L, M>,
 {
     fn step(&mut self, mechanism: &M, h: f64) -> Result<(), contact::Error> {
         self.hybrid.move_by(mechanism, Scalar::constant(h))
@@ -227,7 +287,7 @@ where
     fn at(&mut self, mechanism: &M, t: f64, y: &mut M::State) -> Result<(), Error> {
         let (mut x, t) = (self.hybrid.state().clone(), Scalar::constant(t));
         self.hybrid.interpolate(mechanism, t, &mut x)?;
-        Joint.show(mechanism, t, &x, y);
+        self.hybrid.dynamics().lens.show(mechanism, t, &x, y);
         Ok(())
     }
 
@@ -257,7 +317,7 @@ where
 
     fn strike(&mut self, before: [&M; 2], after: [&M; 2]) {
         let at = (self.hybrid.time(), self.hybrid.state());
-        let x = struck(&Joint, at, [before, after]);
+        let x = struck(&self.hybrid.dynamics().lens, at, [before, after]);
         self.hybrid.strike(&x);
     }
 
@@ -299,6 +359,6 @@ where
     }
 
     fn chart_switches(&self) -> u64 {
-        Correction::<Fed<Joint, M>, M>::switches(self.hybrid.correction())
+        Correction::<Fed<L, M>, M>::switches(self.hybrid.correction())
     }
 }
