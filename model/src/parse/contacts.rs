@@ -278,14 +278,17 @@ pub(super) fn loads(
 
 /// Has what contacts do to joints that close loops seen: by outputs of these coordinates.
 pub(super) fn watch(model: &mut Model) {
-    let cut = Tree::of_coordinates(model).loop_joints;
+    let (cut, known) = (Tree::of_coordinates(model).loop_joints, model.visible());
+    let named = |seen: Seen| {
+        let name = known.iter().find(|(_, other)| *other == seen).map_or("", |(name, _)| name.as_str());
+        Formula::seen(name, seen)
+    };
     for index in 0..model.contacts.len() {
         let Contact { on, ref name, .. } = model.contacts[index];
         if !cut.contains(&on.joint) {
             continue;
         }
-        let [value, rate] = [("coordinate", Seen::Coordinate(on)), ("rate", Seen::Rate(on))]
-            .map(|(what, seen)| Formula::seen(what, seen));
+        let [value, rate] = [Seen::Coordinate(on), Seen::Rate(on)].map(named);
         let watched = [
             ("is_at", OutputKind::Formula(value)),
             ("moves", OutputKind::Formula(rate.clone())),
