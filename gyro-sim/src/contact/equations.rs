@@ -53,8 +53,13 @@ pub trait Forced<M = ()>: Ode<M> {
         _out: &mut [[Self::Scalar; 3]],
     ) {
     }
-    /// Whether there may be contacts of which the system tells all.
+    /// Whether there may be contacts of which the system tells all, or many.
     const HAS_SURFACES: bool = false;
+    /// Whether coordinates of contacts may depend on each other, as those of a loop's joints do, or are too many to try
+    /// all combinations of what they do.
+    fn shares(&self, _model: &M) -> bool {
+        false
+    }
     /// Writes value, rate and acceleration of these contacts under these forces: of a coordinate ([`Contact::seen`]), or
     /// of two surfaces ([`Contact::surfaces`]) a gap, m, and the velocities of slip, m/s, whose values are zero. What
     /// forces do is dual to that: the power of a force is its product with the rate.
@@ -143,12 +148,20 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         &self.dynamics
     }
 
-    /// Whether any of the contacts are between surfaces, or along what only the system sees.
-    pub(super) fn has_surfaces<M>(&self) -> bool
+    /// Whether the system tells of any contact.
+    fn is_told<M>(&self) -> bool
     where
         D: Forced<M, Scalar = T>,
     {
         D::HAS_SURFACES && self.contacts.iter().any(|contact| matches!(contact.role, Role::Gap | Role::Seen))
+    }
+
+    /// Whether forces are found by iteration, as they may depend on each other: no combinations are tried.
+    pub(super) fn iterates<M>(&self, model: &M) -> bool
+    where
+        D: Forced<M, Scalar = T>,
+    {
+        D::HAS_SURFACES && (self.is_told::<M>() || self.dynamics.shares(model))
     }
 
     /// Value and rate of each contact.
@@ -173,7 +186,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         D: Forced<M, Scalar = T>,
     {
         let mut seen = [[T::constant(0.0); 3]; N];
-        if self.has_surfaces::<M>() {
+        if self.is_told::<M>() {
             self.dynamics.seen(model, t, y, forces, &mut seen);
         }
         seen
@@ -192,7 +205,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
     {
         let seen = self.seen(model, (t, y), forces);
         let is_coordinate = |contact: &Contact<T>| contact.role == Role::Coordinate && contact.acts();
-        if !self.has_surfaces::<M>() || self.contacts.iter().any(is_coordinate) {
+        if !self.is_told::<M>() || self.contacts.iter().any(is_coordinate) {
             self.dynamics.accelerations(model, t, y, forces, scratch);
         }
         from_fn(|k| {
@@ -271,7 +284,12 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
 
     /// The forces of all contacts in their present phases, solved together: what is held is not accelerated, and
     /// friction on what moves has its level under the reactions that all forces make.
-    pub(super) fn acting(&self, local: &Local<T, N>, loads: Option<&Loads<T, N>>) -> Acting<T, N> {
+    pub(super) fn acting(
+        &self,
+        local: &Local<T, N>,
+        loads: Option<&Loads<T, N>>,
+        is_shared: bool,
+    ) -> Acting<T, N> {
         let is_held = self.phases.map(Phase::is_held);
         let held = from_fn(|k| is_held[k] && !self.spent[k]);
         let pulls = self.pulls(&local.rates);
@@ -288,8 +306,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         }
         self.rub(&mut forces, &pulls);
         let right = local.accelerations(&forces).map(|a| -a);
-        let touch = self.contacts.iter().any(|contact| matches!(contact.role, Role::Gap | Role::Seen));
-        let solve = |right: &[T; N]| match touch {
+        let solve = |right: &[T; N]| match is_shared {
             true => spread(compliance, right, &held),
             false => solve(compliance, right, &held),
         };
@@ -398,7 +415,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             true => self.local(model, (t, y), &rubbing, scratch),
             false => Local { rates: [zero; N], bias: [zero; N], compliance: [[zero; N]; N] },
         };
-        let acting = self.acting(&local, self.loads(model, (t, y), &rubbing).as_ref());
+        let acting = self.acting(&local, self.loads(model, (t, y), &rubbing).as_ref(), self.iterates(model));
         // At later stages of a step that has met a jam nothing is finite any more.
         if acting.jam.is_some_and(|jam| jam.gain >= 1.0) {
             self.jam.set(acting.jam);

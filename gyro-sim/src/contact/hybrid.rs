@@ -376,7 +376,7 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
             }
         }
         let equations = self.solver.dynamics();
-        if equations.has_surfaces::<M>() && phases.iter().any(|phase| phase.is_held()) {
+        if equations.iterates(model) && phases.iter().any(|phase| phase.is_held()) {
             let (t, mut y) = (self.solver.time(), self.solver.state().clone());
             let held = phases.map(Phase::is_held);
             equations.hold(model, (t, &mut y), (&held, &equations.ends()), &mut self.scratch);

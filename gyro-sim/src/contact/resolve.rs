@@ -161,7 +161,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
                 let ([first, ..], _) = options[k];
                 options[k].0.get(choice[k]).copied().unwrap_or(first)
             });
-            let acting = self.acting(&local, loads.as_ref());
+            let acting = self.acting(&local, loads.as_ref(), false);
             jam = jam.or(acting.jam);
             let violation = match acting.jam {
                 Some(_) => T::constant(f64::INFINITY),

@@ -313,7 +313,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         // Exactly; and what is not consistent with its phase is given another one.
         let mut worst = zero;
         for _ in 0..REPAIRS * N {
-            let acting = self.acting(&local, loads.as_ref());
+            let acting = self.acting(&local, loads.as_ref(), true);
             if let Some(jam) = acting.jam {
                 return Err(self.jammed(t, &jam));
             }

@@ -126,7 +126,7 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         let at_upper: [bool; N] = core::array::from_fn(|k| !phases[k].is_held() && is_due(1, k));
         let reached: [bool; N] =
             core::array::from_fn(|k| phases[k].is_held() && (is_due(0, k) || is_due(1, k)));
-        if equations.has_surfaces::<M>() {
+        if equations.iterates(model) {
             let fastest = fastest(y.as_ref(), &places) + length.map_or(zero, |h| equations.largest * h);
             equations.slowest = larger(equations.slowest, rounding(fastest));
             equations.creep = larger(equations.slowest, T::constant(CREEP) * fastest);
@@ -161,7 +161,7 @@ impl<T: Real, const N: usize> Ledger<T, N> {
         });
         let touched = [&at_lower, &at_upper];
         let hits = self.hits(equations, (y.as_mut(), &before, size), touched, next.map(|(next, _)| next));
-        let chosen = if equations.has_surfaces::<M>() {
+        let chosen = if equations.iterates(model) {
             self.touch(equations, (model, t), y, (&hits, [&caught, &reached], next.is_none()), scratch)
         } else {
             self.collide(equations, (model, t), y, &hits, scratch);
@@ -248,6 +248,12 @@ impl<T: Real, const N: usize> Ledger<T, N> {
             _ => T::constant(f64::NAN),
         });
         equations.hold(model, (t, y), (&held, &ends), scratch);
+        // What is brought to rest with it rests.
+        for contact in contacts.iter().filter(|contact| contact.role == Role::Coordinate && contact.rubs()) {
+            if at(y.as_ref(), contact.rate).abs() <= slowest {
+                set(y.as_mut(), contact.rate, zero);
+            }
+        }
         equations.choose_surfaces(model, (t, y), [&rests, &still, reached], &mut scratch[0])
     }
 

@@ -89,7 +89,7 @@ impl<D, S: Storage<T>, T: Real, const N: usize> Stepped<D, S, T, N> {
             self.ledger.begin(places.map(|[_, rate]| rate));
             self.rk4.step(&self.equations, model, begin, h, y);
             let held = self.equations.phases.map(Phase::is_held);
-            if held.contains(&true) && self.equations.has_surfaces::<M>() {
+            if held.contains(&true) && self.equations.iterates(model) {
                 let ends = self.equations.ends();
                 self.equations.hold(model, (end, y), (&held, &ends), &mut self.scratch);
             }

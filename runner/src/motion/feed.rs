@@ -16,6 +16,9 @@ use std::cell::{OnceCell, Ref, RefCell};
 use std::ops::Range;
 use std::rc::Rc;
 
+/// Of so many contacts all combinations of what they do are tried.
+pub(super) const FEW: usize = 8;
+
 /// Equations, perhaps with inputs that follow the time.
 pub(super) struct Fed<L, M: Mechanism> {
     pub(super) lens: L,
@@ -202,6 +205,10 @@ impl<L: Lens<M>, M: JointSpace> Fed<L, M> {
 impl<L: Pushed<M>, M: JointSpace> Forced<M> for Fed<L, M> {
     const HAS_REACTIONS: bool = true;
     const HAS_SURFACES: bool = true;
+
+    fn shares(&self, mechanism: &M) -> bool {
+        !mechanism.joint_layout().closure_rows.is_empty() || self.forces().len() > FEW
+    }
 
     fn seen(&self, _: &M, t: M::Scalar, x: &L::State, forces: &[M::Scalar], out: &mut [[M::Scalar; 3]]) {
         let told = self.feed.get().map_or(&[][..], |feed| &feed.told);

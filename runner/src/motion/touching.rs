@@ -3,7 +3,7 @@
 use super::attempt::{Look, Shown};
 use super::contract::{Begun, Motion};
 use super::course::Course;
-use super::feed::{Around, Fed, Told};
+use super::feed::{Around, FEW, Fed, Told};
 use super::kink::struck;
 use super::lens::Pushed;
 use super::moving::control;
@@ -17,7 +17,6 @@ use gyro_sim::{
 };
 
 /// The contacts of a run; those that it does not have do nothing. Surfaces have three at each point.
-const FEW: usize = 8;
 const MANY: usize = 96;
 
 type Touching<M, L, A, C, const N: usize> =
