@@ -183,7 +183,7 @@ where
             let time = Dual { value: t, slopes: unit(n) };
             Ode::<Dualled>::derivative(&self.dynamics, &self.in_duals, time, &arguments, &mut slopes);
             for (row, (slopes, dfdt)) in
-                dfdy.as_mut().chunks_exact_mut(n).zip(slopes.as_ref().iter().zip(dfdt.as_mut()))
+                dfdy.as_mut().chunks_exact_mut(n.max(1)).zip(slopes.as_ref().iter().zip(dfdt.as_mut()))
             {
                 for (column, slope) in (from..).zip(slopes.slopes) {
                     match row.get_mut(column) {

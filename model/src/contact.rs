@@ -25,7 +25,7 @@ pub struct Contact {
     pub reaction: Option<usize>,
     /// Index into [`crate::Model::inputs`] of its force.
     pub input: usize,
-    /// Of a coordinate that joint states do not have, as its joint is cut: the first of three outputs, which are its
+    /// Of a coordinate that joint states may not have, as its joint is cut or a coupler ties it: the first of three outputs, which are its
     /// value, its rate and its acceleration.
     pub seen: Option<usize>,
 }
@@ -52,7 +52,7 @@ pub struct Touching {
 
 impl Contact {
     /// Most contacts of a model.
-    pub const MOST: usize = 8;
+    pub const MOST: usize = 96;
 
     /// All its numbers.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = &Number> {

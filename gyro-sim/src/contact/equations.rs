@@ -164,6 +164,11 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         D::HAS_SURFACES && (self.is_told::<M>() || self.dynamics.shares(model))
     }
 
+    /// Whether a coordinate does not move by one bit.
+    pub(super) fn is_pinned(&self, k: usize) -> bool {
+        self.phases[k].is_held() && self.contacts[k].role == Role::Coordinate && !self.spent[k]
+    }
+
     /// Value and rate of each contact.
     pub(super) fn places<M>(&self, model: &M, (t, y): (T, &D::State)) -> [[T; 2]; N]
     where
@@ -446,8 +451,8 @@ where
             dy.as_mut().fill(T::constant(f64::NAN));
             return;
         }
-        for (contact, phase) in self.contacts.iter().zip(self.phases) {
-            if phase.is_held() {
+        for (k, contact) in self.contacts.iter().enumerate() {
+            if self.is_pinned(k) {
                 set(dy.as_mut(), contact.coordinate, T::constant(0.0));
                 set(dy.as_mut(), contact.rate, T::constant(0.0));
             }

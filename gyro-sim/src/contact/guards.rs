@@ -58,6 +58,7 @@ where
             continue;
         }
         if equations.spent[k] && phase.is_held() {
+            guards[2][k] = equations.slowest + equations.slowest - rate.abs();
             continue;
         }
         if contact.role == Role::Gap && phase.is_held() {

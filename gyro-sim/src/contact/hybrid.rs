@@ -4,7 +4,7 @@ use super::equations::{Contacts, Forced, Kept};
 use super::guards::{Guards, guards};
 use super::settle::{Change, Ledger, Next, Record, rounding};
 use super::small::at;
-use super::{Contact, Error, Phase, Role};
+use super::{Contact, Error, Phase};
 use crate::contract::Storage;
 use crate::integrate::Method;
 use crate::solver::Mark;
@@ -311,10 +311,10 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         C: Correction<D, M>,
     {
         self.solver.interpolate(model, t, out)?;
-        let Contacts { contacts, phases, .. } = self.solver.dynamics();
+        let equations = self.solver.dynamics();
         let y = self.solver.state();
-        for (contact, phase) in contacts.iter().zip(phases) {
-            if phase.is_held() && contact.role == Role::Coordinate {
+        for (k, contact) in equations.contacts.iter().enumerate() {
+            if equations.is_pinned(k) {
                 out.as_mut()[contact.coordinate] = y.as_ref()[contact.coordinate];
                 out.as_mut()[contact.rate] = y.as_ref()[contact.rate];
             }
@@ -369,11 +369,10 @@ impl<D, S: Storage<T>, T: Real, A, C, const N: usize> Hybrid<D, S, T, A, C, N> {
         D: Forced<M, Scalar = T, State = S>,
     {
         let (contacts, phases) = (self.solver.dynamics().contacts, self.solver.dynamics().phases);
-        for (contact, phase) in contacts.iter().zip(phases) {
-            if phase.is_held() && contact.role == Role::Coordinate {
-                self.solver.pin(&self.mark, contact.coordinate);
-                self.solver.pin(&self.mark, contact.rate);
-            }
+        let pinned: [bool; N] = core::array::from_fn(|k| self.solver.dynamics().is_pinned(k));
+        for (contact, _) in contacts.iter().zip(pinned).filter(|(_, is_pinned)| *is_pinned) {
+            self.solver.pin(&self.mark, contact.coordinate);
+            self.solver.pin(&self.mark, contact.rate);
         }
         let equations = self.solver.dynamics();
         if equations.iterates(model) && phases.iter().any(|phase| phase.is_held()) {

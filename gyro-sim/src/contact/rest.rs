@@ -107,9 +107,13 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             return;
         }
         let local = self.local(model, (t, y), held, &mut scratch[0]);
-        let feeble = self.feeble(&local, self.loads(model, (t, y), held).as_ref());
-        let passes = |k: usize| self.contacts[k].role == Role::Seen && !ends[k].is_finite() && feeble[k];
-        let held = &from_fn(|k| held[k] && !passes(k));
+        let slowed = self.slowed(&local, self.loads(model, (t, y), held).as_ref());
+        let noise = self.noise(model, (t, y), &mut scratch[0]);
+        let passes = |k: usize| {
+            let least = larger(noise, T::constant(FEEBLE) * local.bias[k].abs());
+            self.contacts[k].role == Role::Seen && !ends[k].is_finite() && slowed[k] <= least
+        };
+        let held = &from_fn(|k| held[k] && !self.spent[k] && !passes(k));
         let places = self.places(model, (t, y));
         let is_told = |k: usize| matches!(self.contacts[k].role, Role::Gap | Role::Seen);
         let is_off = |k: usize| held[k] && is_told(k) && ends[k].is_finite();
@@ -230,11 +234,14 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         });
         let local = self.local(model, (t, y), &acting, scratch);
         let loads = self.loads(model, (t, y), &acting);
-        self.pass(&local, loads.as_ref());
+        // Of what does not move at all, as others lock it, that is left which is rounding beside all that moves.
+        let noise = self.noise(model, (t, y), scratch);
+        self.pass((&local, loads.as_ref()), noise);
         let pulls = self.pulls(&local.rates);
         let bound = |k: usize| match (&self.contacts[k], self.phases[k]) {
             (contact, Phase::Sticks) if contact.slip().is_some() => Bound::Plane(contact.coefficients[1]),
             (_, Phase::Slides) => Bound::Pulled(pulls[k]),
+            _ if self.spent[k] => Bound::Given,
             (contact, phase) if phase.is_held() => Bound::Between(bounds(contact.levels[1], phase)),
             _ => Bound::Given,
         };
@@ -263,7 +270,8 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         self.slack = [self.weakest; N];
         let fastest = (0..N).filter(|k| acting[*k]).fold(zero, |most, k| larger(most, local.bias[k].abs()));
         self.largest = larger(self.largest, fastest);
-        let [rounding, unmet] = [ROUNDING, UNMET].map(|limit| not_below_rounding::<T>(limit) * self.largest);
+        let [rounding, unmet] =
+            [ROUNDING, UNMET].map(|limit| larger(not_below_rounding::<T>(limit) * self.largest, noise));
         let accelerations = local.accelerations(&forces);
         let firm: [bool; N] = from_fn(|k| match cones.bounds[k] {
             Bound::Between([low, high]) => low + self.weakest < forces[k] && forces[k] < high - self.weakest,
@@ -343,23 +351,39 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         }
     }
 
-    /// What friction cannot hold, as a coordinate in the dead centre of a linkage, passes through rest.
-    fn pass(&mut self, local: &Local<T, N>, loads: Option<&Loads<T, N>>) {
-        let feeble = self.feeble(local, loads);
-        for k in 0..N {
-            if self.phases[k] == Phase::Sticks && self.contacts[k].slip().is_none() && feeble[k] {
-                self.phases[k] = if local.bias[k] > T::constant(0.0) { Phase::Up } else { Phase::Down };
+    /// What rounding may make of an acceleration.
+    fn noise<M>(&self, model: &M, (t, y): (T, &D::State), scratch: &mut D::State) -> T
+    where
+        D: Forced<M, Scalar = T>,
+    {
+        self.dynamics.accelerations(model, t, y, &[T::constant(0.0); N], scratch);
+        let own = self.dynamics.rates(model);
+        let moves = scratch.as_ref().iter().take(own.end).skip(own.start);
+        not_below_rounding::<T>(0.0) * size(moves)
+    }
+
+    /// What friction cannot hold, as a coordinate in the dead centre of a linkage, passes through rest; or stays, where
+    /// it is locked.
+    fn pass(&mut self, (local, loads): (&Local<T, N>, Option<&Loads<T, N>>), noise: T) {
+        let slowed = self.slowed(local, loads);
+        for k in (0..N).filter(|k| self.contacts[*k].slip().is_none()) {
+            let bias = local.bias[k];
+            match self.phases[k] {
+                Phase::Sticks if slowed[k] <= noise && bias.abs() <= noise => self.spent[k] = true,
+                Phase::Sticks if slowed[k] < larger(noise, T::constant(FEEBLE) * bias.abs()) => {
+                    self.phases[k] = if bias > T::constant(0.0) { Phase::Up } else { Phase::Down };
+                }
+                _ => {}
             }
         }
     }
 
-    /// Whose friction makes next to no difference to its motion.
-    fn feeble(&self, local: &Local<T, N>, loads: Option<&Loads<T, N>>) -> [bool; N] {
+    /// The accelerations that friction takes alone.
+    fn slowed(&self, local: &Local<T, N>, loads: Option<&Loads<T, N>>) -> [T; N] {
         let sizes = loads.map_or([T::constant(0.0); N], Loads::sizes);
         from_fn(|k| {
             let Contact { levels, coefficients, .. } = self.contacts[k];
-            let slowed = local.compliance[k][k].abs() * (levels[1] + coefficients[1] * sizes[k]);
-            slowed < T::constant(FEEBLE) * local.bias[k].abs()
+            local.compliance[k][k].abs() * (levels[1] + coefficients[1] * sizes[k])
         })
     }
 

@@ -10,8 +10,8 @@ use crate::diagnostics::Related;
 use crate::keys::{CONTACT, CONTACT_SIDE};
 use crate::validate::{Owner, Place};
 use crate::{
-    Contact, Element, Force, ForceKind, Formula, Joint, Model, Number, Output, OutputKind, Parameter,
-    Rational, Seen, Touching, Tree,
+    Contact, Coupler, Element, Force, ForceKind, Formula, Joint, Model, Number, Output, OutputKind,
+    Parameter, Rational, Seen, Touching, Tree,
 };
 
 /// Reads all contacts: those on joint coordinates, whose inputs come after so many others, and those between bodies,
@@ -276,7 +276,7 @@ pub(super) fn loads(
     }
 }
 
-/// Has what contacts do to joints that close loops seen: by outputs of these coordinates.
+/// Has coordinates seen, by outputs, of contacts on joints that close loops, or on what a coupler ties.
 pub(super) fn watch(model: &mut Model) {
     let (cut, known) = (Tree::of_coordinates(model).loop_joints, model.visible());
     let named = |seen: Seen| {
@@ -285,7 +285,8 @@ pub(super) fn watch(model: &mut Model) {
     };
     for index in 0..model.contacts.len() {
         let Contact { on, ref name, .. } = model.contacts[index];
-        if !cut.contains(&on.joint) {
+        let ties = |coupler: &Coupler| coupler.second.is_some() && coupler.coordinates().contains(&on);
+        if !cut.contains(&on.joint) && !model.couplers.iter().any(ties) {
             continue;
         }
         let [value, rate] = [Seen::Coordinate(on), Seen::Rate(on)].map(named);

@@ -234,8 +234,8 @@ fn place<M: JointSpace>(mechanism: &M, stop: &Stop) -> Result<[usize; 2], String
     }
     let joint = mechanism.description().joints.get(stop.on.0).map_or("", |joint| joint.name);
     Err(format!(
-        "a rigid stop or friction that sticks is on joint `{joint}`, whose coordinate a coupler or a driver determines: put it \
-         on the joint that moves freely"
+        "a rigid stop or friction that sticks is on joint `{joint}`, whose coordinate a driver determines: put it on a joint that \
+         moves freely"
     ))
 }
 

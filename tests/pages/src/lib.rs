@@ -24,6 +24,7 @@ mod loops;
 mod page;
 mod pairs;
 mod ready;
+mod rubbing;
 mod scenes;
 mod touching;
 mod vector;
@@ -31,6 +32,7 @@ mod vector;
 use dice::Dice;
 use page::Page;
 
+pub use rubbing::rubbing;
 pub use scenes::scene;
 
 /// The model file of a seed, always the same: some numbers are written as results of arithmetic.
