@@ -281,15 +281,84 @@ fn contacts_are_refused_where_they_cannot_be() {
     Sledge::random(&mut random).write(0, &mut text);
     fs::write(folder.0.join("sledge.toml"), text).unwrap();
     let run = |args: &[&str]| simulate(&folder, &[&["sledge.toml"], args].concat());
-    refused(&run(&["--engine", "jit", "--coordinates", "maximal"]), "choose --coordinates joint");
-    refused(&run(&["--engine", "assembled"]), "they are for generated code");
-    let joint = ["--engine", "jit", "--coordinates", "joint"];
-    let stiff = [&joint[..], &["--integrator", "rodas4", "--tolerance", "1e-6"]].concat();
-    refused(&run(&stiff), "are for explicit methods");
-    refused(
-        &run(&[&joint[..], &["--input", "rail_0=1"]].concat()),
-        "this is the force of the contact `rail_0`",
-    );
+    refused(&run(&["--engine", "assembled"]), "are for generated code");
+    let maximal = ["--engine", "jit", "--coordinates", "maximal"];
+    let stiff = [&maximal[..], &["--integrator", "rodas4", "--tolerance", "1e-6"]].concat();
+    refused(&run(&stiff), "choose --coordinates joint, or tsit5");
+    let kept = [&maximal[..], &["--correction", "baumgarte=20"]].concat();
+    refused(&run(&kept), "choose --correction partition or none");
+    refused(&run(&["--engine", "jit", "--input", "rail_0=1"]), "this is the force of the contact `rail_0`");
+}
+
+/// A linkage of four bars with friction that sticks in all its joints and stops on three, one of them cut: from event to
+/// event the same motion in joint coordinates, in maximal ones and by an implicit method.
+#[test]
+fn a_linkage_rubs_and_stops_in_all_its_joints() {
+    let folder = Folder::new("contacts-linkage");
+    let mut text = fs::read_to_string(model("four-bar-revolute.toml")).unwrap();
+    for (joint, level, stop) in [
+        ("crank_pivot", 0.02, ""),
+        ("rocker_pivot", 0.01, "upper = 1.9"),
+        ("elbow", 0.03, "lower = -1.2"),
+        ("knee", 0.02, "lower = 0.6"),
+    ] {
+        let at_rest = 1.3 * level;
+        let _ = write!(
+            text,
+            "\n[[contact]]\nname = \"on_{joint}\"\njoint = \"{joint}\"\nfriction = {level:?}\nstatic_friction = {at_rest:?}\n{stop}\n{}",
+            if stop.is_empty() { "" } else { "restitution = 0.5\n" }
+        );
+    }
+    fs::write(folder.0.join("linkage.toml"), text).unwrap();
+    let run = |way: &[&str]| json(&folder, &[&["linkage.toml", "--no-prove", "--t-end", "2"], way].concat());
+    let first = run(&["--tolerance", "1e-11"]);
+    for joint in ["rocker_pivot", "elbow", "knee"] {
+        assert!(!listed(&first, &format!("on_{joint}")).is_empty(), "{}", first["events"]);
+    }
+    let hits = |run: &Value| {
+        let all = listed(run, "on_rocker_pivot").into_iter().chain(listed(run, "on_knee"));
+        // Later rebounds are too low to be told from none.
+        all.filter(|(t, what, _)| what.starts_with("hits") && *t < 1.16).map(|(t, ..)| t).collect::<Vec<_>>()
+    };
+    assert!(hits(&first).len() > 5, "{}", first["events"]);
+    for (way, limit) in [
+        (&["--coordinates", "maximal", "--tolerance", "1e-11"][..], 1e-9),
+        (&["--coordinates", "maximal", "--correction", "none", "--tolerance", "1e-11"], 1e-9),
+        (&["--integrator", "rodas4", "--tolerance", "1e-8"], 1e-6),
+    ] {
+        let other = run(way);
+        assert!(other["energy_drift"].as_f64().unwrap() < limit, "{way:?}: {}", other["energy_drift"]);
+        let (one, two) = (hits(&first), hits(&other));
+        assert_eq!(one.len(), two.len(), "{way:?}: {one:?} {two:?}");
+        assert!(one.iter().zip(&two).all(|(a, b)| (a - b).abs() < limit), "{way:?}: {one:?} {two:?}");
+        for joint in ["crank_pivot", "knee"] {
+            let [a, b] = [&first, &other].map(|run| run["joints"][joint]["position"].as_f64().unwrap());
+            assert!((a - b).abs() < limit, "{way:?}: {joint} {a} {b}");
+        }
+    }
+}
+
+/// Random mechanisms, with all that the format has, in these three ways.
+#[test]
+#[ignore = "takes long: `.ci/steps` runs it"]
+fn random_mechanisms_rub_and_stop_alike() {
+    let folder = Folder::new("contacts-random");
+    fs::write(folder.0.join("t.csv"), gyro_pages::TABLE).unwrap();
+    let ways = [&[][..], &["--coordinates", "maximal"], &["--integrator", "rodas4"]];
+    for seed in 100..120 {
+        fs::write(folder.0.join("page.toml"), gyro_pages::rubbing(seed)).unwrap();
+        let common = ["page.toml", "--no-prove", "--t-end", "0.5", "--tolerance", "1e-9"];
+        let runs = ways.map(|way| json(&folder, &[&common[..], way].concat()));
+        for (run, way) in runs.iter().zip(ways) {
+            assert!(run["energy_drift"].as_f64().unwrap() < 1e-8, "{seed} {way:?}: {}", run["energy_drift"]);
+            for (name, joint) in run["joints"].as_object().unwrap() {
+                let places = [joint, &runs[0]["joints"][name]].map(|joint| joint["position"].as_f64());
+                if let [Some(a), Some(b)] = places {
+                    assert!((a - b).abs() < 1e-5, "{seed} {way:?}: {name} {a} {b}");
+                }
+            }
+        }
+    }
 }
 
 /// A mass on a spring that swings as far as its upper stop, or by so much further: it grazes.
@@ -338,7 +407,7 @@ fn every_combination_is_right_or_refused() {
         &["--integrator", "rodas4", "--tolerance", "1e-6"],
     ];
     // An error of the amplitude may make a hit of a miss, which moves the phase by its root.
-    let limits = [1e-1_f64, 2e-1, 1e-3, 3e-1, 3e-2, 1e-4, 0.0];
+    let limits = [1e-1_f64, 2e-1, 1e-3, 3e-1, 3e-2, 1e-4, 1e-1];
     let (mut right, mut refusals) = (0, 0);
     for (case, (joint, text, expected, grazes)) in cases.iter().enumerate() {
         let file = format!("case-{case}.toml");
@@ -354,8 +423,8 @@ fn every_combination_is_right_or_refused() {
                 let how = ["--coordinates", coordinates, "--correction", correction];
                 let output = simulate(&folder, &[&[&file[..]], &around[..], method, &how].concat());
                 let told = format!("case {case}: {method:?} {coordinates} {correction}");
-                if coordinates == "maximal" || method.contains(&"rodas4") {
-                    refused(&output, "rigid stops and friction that sticks");
+                if coordinates == "maximal" && (correction != "partition" || method.contains(&"rodas4")) {
+                    refused(&output, "rigid contacts");
                     refusals += 1;
                     continue;
                 }
@@ -369,5 +438,5 @@ fn every_combination_is_right_or_refused() {
             }
         }
     }
-    assert_eq!((right, refusals), (6 * 6 * 2, 6 * (6 * 2 + 4)));
+    assert_eq!((right, refusals), (6 * (7 * 2 + 6), 6 * (7 + 1)));
 }

@@ -168,7 +168,9 @@ fn sum<T: Scalar, const N: usize>(terms: &[(T, &[T]); N], i: usize) -> T {
 /// The root mean square of the elements' errors over their weights, and the index of the largest.
 #[inline(always)]
 fn root_mean_square<T: Real, S: Storage<T>>(weights: &S, error: impl Fn(usize) -> T) -> (T, usize) {
-    let (mut sum, mut n, mut worst) = (T::constant(0.0), 0.0, (T::constant(0.0), 0));
+    let (mut sum, mut worst) = (T::constant(0.0), (T::constant(0.0), 0));
+    // A state may have no elements.
+    let mut n = 0.0_f64;
     for (i, weight) in weights.as_ref().iter().enumerate() {
         let error = (error(i) / *weight).abs();
         if !error.is_finite() {
@@ -180,7 +182,7 @@ fn root_mean_square<T: Real, S: Storage<T>>(weights: &S, error: impl Fn(usize) -
             worst = (error, i);
         }
     }
-    ((sum / T::constant(n)).sqrt(), worst.1)
+    ((sum / T::constant(n.max(1.0))).sqrt(), worst.1)
 }
 
 /// The squares of the lengths of differences, of slopes and of the states that they belong to: a rate.
