@@ -58,7 +58,7 @@ mod run;
 pub use admissible::check;
 #[cfg(feature = "machine-code")]
 pub use calls::{Library, NotLoaded, Sizes};
-pub use contract::{Independent, OnHeap};
+pub use contract::Independent;
 pub use engine::{Arguments, Engine, Input, NotCompiled};
 pub use interpret::Interpreter;
 #[cfg(feature = "machine-code")]

@@ -25,8 +25,8 @@ pub struct Contact {
     pub reaction: Option<usize>,
     /// Index into [`crate::Model::inputs`] of its force.
     pub input: usize,
-    /// Of a coordinate that joint states may not have, as its joint is cut or a coupler ties it: the first of three outputs, which are its
-    /// value, its rate and its acceleration.
+    /// Of a coordinate that joint states may not have, as its joint is cut or a coupler ties it: the first of three
+    /// outputs, which are its value, its rate and its acceleration.
     pub seen: Option<usize>,
 }
 

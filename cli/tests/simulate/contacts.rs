@@ -290,8 +290,8 @@ fn contacts_are_refused_where_they_cannot_be() {
     refused(&run(&["--engine", "jit", "--input", "rail_0=1"]), "this is the force of the contact `rail_0`");
 }
 
-/// A linkage of four bars with friction that sticks in all its joints and stops on three, one of them cut: from event to
-/// event the same motion in joint coordinates, in maximal ones and by an implicit method.
+/// A linkage of four bars with friction that sticks in all its joints and stops on three, one of them cut: from event
+/// to event the same motion in joint coordinates, in maximal ones and by an implicit method.
 #[test]
 fn a_linkage_rubs_and_stops_in_all_its_joints() {
     let folder = Folder::new("contacts-linkage");

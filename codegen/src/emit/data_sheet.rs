@@ -1,7 +1,7 @@
 //! The data sheet of a generated module: sizes, what each function costs pass by pass, what was left out; and the head
 //! of the file, which shows of it what the verifier can see for itself.
 
-use crate::equations::{Equations, PartitionForm};
+use crate::equations::Equations;
 use crate::expr::graph::Graph;
 use crate::expr::rounding::LIKE as ROUNDING;
 use crate::expr::schedule::{Operations, Passes};
@@ -274,10 +274,7 @@ fn left_out(equations: &Equations) -> Vec<String> {
         is_possible.then(|| format!("{what} (functions = [\"{name}\"] asks for it)"))
     }));
     if equations.functions.has(Group::Partition) && equations.charts.is_none() {
-        let instead = match equations.partition_form() {
-            PartitionForm::Joints => "the partition goes through joint coordinates",
-            PartitionForm::Charts | PartitionForm::Pivoting => "the run time pivots",
-        };
+        let instead = "the partition goes through joint coordinates";
         left_out.push(format!("charts (for trees of revolute, spherical and fixed joints: {instead})"));
     }
     if model.attraction.is_none() && model.gravity.iter().all(gyro_model::Number::is_zero) {

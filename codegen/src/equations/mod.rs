@@ -101,8 +101,6 @@ pub enum PartitionForm {
     Charts,
     /// Through joint coordinates.
     Joints,
-    /// By pivoting at run time.
-    Pivoting,
 }
 
 /// The partition by charts.
@@ -128,13 +126,7 @@ pub struct Parts {
 impl<'m> Equations<'m> {
     /// How the partition goes, where it is asked for.
     pub fn partition_form(&self) -> PartitionForm {
-        if self.charts.is_some() {
-            PartitionForm::Charts
-        } else if self.joint_space.is_some() {
-            PartitionForm::Joints
-        } else {
-            PartitionForm::Pivoting
-        }
+        if self.charts.is_some() { PartitionForm::Charts } else { PartitionForm::Joints }
     }
 
     /// Expands what was derived and solved, each function in the cheapest way. `solved` are the accelerations as they

@@ -1,9 +1,9 @@
 //! Equations of motion with contacts in their phases.
 
 use super::loads::{Acting, Growth, Jam, Loads, size};
-use super::small::{at, larger, plus_product, set, solve, spread};
+use super::small::{at, plus_product, solve, spread};
 use super::{Contact, Phase, Role};
-use crate::{Clearance, Correction, Error, Jacobian, Ode, Real};
+use crate::{Ode, Real};
 use core::array::from_fn;
 use core::cell::Cell;
 use core::ops::Range;
@@ -60,8 +60,8 @@ pub trait Forced<M = ()>: Ode<M> {
     fn shares(&self, _model: &M) -> bool {
         false
     }
-    /// Writes value, rate and acceleration of these contacts under these forces: of a coordinate ([`Contact::seen`]), or
-    /// of two surfaces ([`Contact::surfaces`]) a gap, m, and the velocities of slip, m/s, whose values are zero. What
+    /// Writes value, rate and acceleration of these contacts under these forces: of a coordinate ([`Contact::seen`]),
+    /// or of two surfaces ([`Contact::surfaces`]) a gap, m, and the velocities of slip, m/s, whose values are zero. What
     /// forces do is dual to that: the power of a force is its product with the rate.
     fn seen(
         &self,
@@ -116,9 +116,6 @@ pub(super) struct Local<T, const N: usize> {
 /// So large a force that nothing else counts beside it: what it adds is a unit force's times it, to rounding. A power
 /// of two.
 pub(super) const LARGE: f64 = 1_099_511_627_776.0;
-
-/// What is smaller than this, in its unit, is differentiated as if it were that large.
-const NEAR: f64 = 1e-3;
 
 impl<D, T: Real, const N: usize> Contacts<D, T, N> {
     pub(super) fn new(dynamics: D, contacts: [Contact<T>; N]) -> Self {
@@ -433,97 +430,6 @@ impl<T: Real, const N: usize> Local<T, N> {
     /// The accelerations of the coordinates under these forces.
     pub(super) fn accelerations(&self, forces: &[T; N]) -> [T; N] {
         plus_product(&self.bias, &self.compliance, forces)
-    }
-}
-
-impl<M, D, T: Real, const N: usize> Ode<M> for Contacts<D, T, N>
-where
-    D: Forced<M, Scalar = T>,
-{
-    type Scalar = T;
-    type State = D::State;
-
-    fn derivative(&self, model: &M, t: T, y: &D::State, dy: &mut D::State) {
-        let Acting { forces, jam, .. } = self.forces(model, (t, y), dy);
-        self.dynamics.forced(model, t, y, &forces, dy);
-        if jam.is_some() {
-            // No step is to go on from here.
-            dy.as_mut().fill(T::constant(f64::NAN));
-            return;
-        }
-        for (k, contact) in self.contacts.iter().enumerate() {
-            if self.is_pinned(k) {
-                set(dy.as_mut(), contact.coordinate, T::constant(0.0));
-                set(dy.as_mut(), contact.rate, T::constant(0.0));
-            }
-        }
-    }
-
-    fn normalise(&self, model: &M, y: &mut D::State) {
-        self.dynamics.normalise(model, y);
-    }
-}
-
-/// Where a contact acts, by central differences: what holds it depends on the state too.
-impl<M, D, T: Real, const N: usize> Jacobian<M> for Contacts<D, T, N>
-where
-    D: Forced<M, Scalar = T> + Jacobian<M>,
-{
-    type Matrix = D::Matrix;
-
-    fn jacobian(&self, model: &M, t: T, y: &D::State, dfdy: &mut D::Matrix, dfdt: &mut D::State) {
-        if self.phases.iter().all(|phase| *phase == Phase::Free) {
-            return self.dynamics.jacobian(model, t, y, dfdy, dfdt);
-        }
-        let step = |x: T| T::constant(libm::cbrt(T::EPSILON.to_f64())) * larger(x.abs(), T::constant(NEAR));
-        let [mut there, mut before, mut after] = [y.clone(), y.clone(), y.clone()];
-        let n = y.as_ref().len();
-        for k in 0..n {
-            let x = at(y.as_ref(), k);
-            let [low, high] = [x - step(x), x + step(x)];
-            set(there.as_mut(), k, low);
-            self.derivative(model, t, &there, &mut before);
-            set(there.as_mut(), k, high);
-            self.derivative(model, t, &there, &mut after);
-            set(there.as_mut(), k, x);
-            let slopes = after.as_ref().iter().zip(before.as_ref());
-            for (place, (after, before)) in dfdy.as_mut().iter_mut().skip(k).step_by(n).zip(slopes) {
-                *place = (*after - *before) / (high - low);
-            }
-        }
-        let [low, high] = [t - step(t), t + step(t)];
-        self.derivative(model, low, y, &mut before);
-        self.derivative(model, high, y, &mut after);
-        let slopes = after.as_ref().iter().zip(before.as_ref());
-        for (place, (after, before)) in dfdt.as_mut().iter_mut().zip(slopes) {
-            *place = (*after - *before) / (high - low);
-        }
-    }
-}
-
-/// A correction of the equations without contacts.
-#[derive(Clone, Debug)]
-pub struct Kept<C>(pub C);
-
-impl<M, D, C, T: Real, const N: usize> Correction<Contacts<D, T, N>, M> for Kept<C>
-where
-    D: Forced<M, Scalar = T>,
-    C: Correction<D, M>,
-{
-    fn correct(&mut self, model: &M, t: T, y: &mut D::State) -> Result<(), Error> {
-        self.0.correct(model, t, y)
-    }
-    fn refer_turns(&mut self, model: &M, t: T, y: &mut D::State) {
-        self.0.refer_turns(model, t, y);
-    }
-    fn violation(&mut self, model: &M, t: T, y: &D::State) -> T {
-        self.0.violation(model, t, y)
-    }
-    fn switches(&self) -> u64 {
-        self.0.switches()
-    }
-    fn clearance(&self, model: &M, t: T, y: &D::State) -> Option<Clearance<T>> {
-        self.0.clearance(model, t, y)
     }
 }
 

@@ -1,7 +1,8 @@
 //! The motion: steps, and what happens at their ends.
 
-use super::equations::{Contacts, Forced, Kept};
+use super::equations::{Contacts, Forced};
 use super::guards::{Guards, guards};
+use super::integrated::Kept;
 use super::settle::{Change, Ledger, Next, Record, rounding};
 use super::small::at;
 use super::{Contact, Error, Phase};

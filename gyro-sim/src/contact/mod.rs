@@ -91,6 +91,7 @@ mod equations;
 mod error;
 mod guards;
 mod hybrid;
+mod integrated;
 mod joint;
 mod loads;
 mod resolve;
@@ -100,9 +101,10 @@ mod settle;
 mod small;
 mod stepped;
 
-pub use equations::{Contacts, Forced, Kept};
+pub use equations::{Contacts, Forced};
 pub use error::Error;
 pub use hybrid::Hybrid;
+pub use integrated::Kept;
 pub use joint::{JointInputs, LoadedJointInputs, joint_accelerations};
 pub use settle::{Change, Record};
 pub use stepped::Stepped;
@@ -156,8 +158,8 @@ impl<T: Real> Contact<T> {
         }
     }
 
-    /// Nothing yet, along a coordinate that is no element of the state: the system tells its value, rate and acceleration
-    /// ([`Forced::seen`]).
+    /// Nothing yet, along a coordinate that is no element of the state: the system tells its value, rate and
+    /// acceleration ([`Forced::seen`]).
     pub fn seen() -> Self {
         Self { role: Role::Seen, ..Self::new(usize::MAX, usize::MAX) }
     }

@@ -5,4 +5,4 @@ mod maximal;
 mod partition;
 mod plain;
 
-pub use partition::{Independent, OnHeap};
+pub use partition::Independent;

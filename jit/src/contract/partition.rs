@@ -3,48 +3,8 @@
 use crate::engine::Engine;
 use crate::mechanism::InProcess;
 use gyro_codegen::{Kernel, PartitionForm};
-use gyro_sim::pivoting::{self, Choice, Extent};
+use gyro_sim::pivoting;
 use gyro_sim::{Clearance, Error, Lanes, Partition, Real, joint_partition};
-
-/// Numbers of constraints and coordinates that are known at run time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OnHeap {
-    n_constraints: usize,
-    n_coordinates: usize,
-}
-
-impl Extent for OnHeap {
-    type Columns = Vec<u16>;
-    type Places = Vec<u16>;
-    type Rows<T: Real> = Vec<T>;
-    type Line<T: Real> = Vec<T>;
-    type Jacobian<T: Real> = Vec<Vec<T>>;
-
-    fn new(n_constraints: usize, n_coordinates: usize) -> Self {
-        Self { n_constraints, n_coordinates }
-    }
-    fn n_constraints(self) -> usize {
-        self.n_constraints
-    }
-    fn n_coordinates(self) -> usize {
-        self.n_coordinates
-    }
-    fn columns(self) -> Vec<u16> {
-        (0..self.n_coordinates).map(|column| column as u16).collect()
-    }
-    fn places(self) -> Vec<u16> {
-        vec![0; self.n_constraints]
-    }
-    fn rows<T: Real>(self) -> Vec<T> {
-        vec![T::constant(0.0); self.n_constraints]
-    }
-    fn line<T: Real>(self) -> Vec<T> {
-        vec![T::constant(0.0); self.n_coordinates]
-    }
-    fn jacobian<T: Real>(self) -> Vec<Vec<T>> {
-        vec![self.line(); self.n_constraints]
-    }
-}
 
 /// Which coordinates are independent.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,8 +13,6 @@ pub enum Independent {
     Charts(Vec<u8>),
     /// Coordinates and rates of a tree of joints.
     Joints,
-    /// What pivoting finds.
-    Pivots(Choice<OnHeap>),
 }
 
 impl<T: Real, E: Engine<T>> InProcess<T, E> {
@@ -81,19 +39,17 @@ impl<T: Real, E: Engine<T>> InProcess<T, E> {
 impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
     type Independent = Independent;
 
-    fn independent(&self, t: T, y: &Vec<T>) -> Independent {
+    fn independent(&self, _t: T, y: &Vec<T>) -> Independent {
         let best = |vectors: &[[T; 4]]| vectors.iter().map(T::best_chart).collect();
         match self.scheduled().partition {
             PartitionForm::Charts => Independent::Charts(self.with_charts(y, best)),
             PartitionForm::Joints => Independent::Joints,
-            PartitionForm::Pivoting => Independent::Pivots(pivoting::independent(self, t, y)),
         }
     }
 
-    fn follow(&self, t: T, y: &Vec<T>, choice: &mut Independent) -> u32 {
+    fn follow(&self, _t: T, y: &Vec<T>, choice: &mut Independent) -> u32 {
         match choice {
             Independent::Joints => 0,
-            Independent::Pivots(choice) => pivoting::follow(self, t, y, choice),
             Independent::Charts(charts) => self.with_charts(y, |vectors| {
                 vectors.iter().zip(charts).map(|(vector, chart)| T::follow_chart(vector, chart)).sum()
             }),
@@ -103,7 +59,6 @@ impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
     fn newton_step(&self, t: T, choice: &Independent, y: &mut Vec<T>) -> Result<(), Error> {
         match choice {
             Independent::Joints => joint_partition::newton_step(self, t, y),
-            Independent::Pivots(choice) => pivoting::newton_step(self, t, choice, y),
             Independent::Charts(charts) => {
                 self.solve(Kernel::NewtonStep, t, charts, y);
                 Ok(())
@@ -121,7 +76,6 @@ impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
                 joint_partition::solve_velocities(self, t, y);
                 Ok(())
             }
-            Independent::Pivots(choice) => pivoting::solve_velocities(self, t, choice, y),
             Independent::Charts(charts) => {
                 self.solve(Kernel::SolveVelocities, t, charts, y);
                 Ok(())
@@ -135,7 +89,6 @@ impl<T: Real, E: Engine<T>> Partition for InProcess<T, E> {
         let has_poses = joint.is_none_or(|joint| !joint.closure_rows.is_empty());
         match self.scheduled().partition {
             PartitionForm::Joints if has_poses => joint_partition::clearance(self, t, y),
-            PartitionForm::Pivoting if has_poses => Some(pivoting::clearance_in::<Self, OnHeap>(self, t, y)),
             _ => None,
         }
     }

@@ -6,6 +6,7 @@ mod contacts;
 mod functions;
 mod kernels;
 mod lengths;
+mod on_heap;
 mod pair;
 mod partition;
 mod proof;

@@ -1,9 +1,10 @@
 //! The partition through joint coordinates against pivoting, which shares no function with it but the constraints: of
 //! what the one has corrected the other finds nothing left to correct, on shipped and on random model files.
 
+use crate::on_heap::OnHeap;
 use chacha20::ChaCha8Rng;
 use gyro_codegen::{Effort, Functions, Group};
-use gyro_jit::{Independent, OnHeap};
+use gyro_jit::Independent;
 use gyro_model::Model;
 use gyro_sim::pivoting::{self, Choice};
 use gyro_sim::{CloseLoops, JointSpace, Mechanism, Partition, Partitioning, refer_turns, violation};

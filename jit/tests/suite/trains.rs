@@ -1,9 +1,9 @@
 //! Gear trains at random, under gravity: the partition, which takes angles from their turn references, against joint
 //! coordinates at a fine tolerance and against pivoting, which reads them off the poses.
 
+use crate::on_heap::OnHeap;
 use chacha20::ChaCha8Rng;
 use gyro_codegen::{Effort, Functions};
-use gyro_jit::OnHeap;
 use gyro_sim::pivoting::{self, Choice};
 use gyro_sim::{
     Control, Corrected, Dop853, Joint, JointSpace, Mechanism, Partitioned, Rk4, Solver, keep_turns,

@@ -101,7 +101,10 @@ where
     for touch in touches {
         let place = told.len();
         let (own, of_own) = match touch {
-            Touch::Stop(stop) => stopped::<M, L>(mechanism, stop)?,
+            Touch::Stop(stop) => {
+                let (contact, told) = stopped::<M, L>(mechanism, stop)?;
+                (vec![contact], vec![told])
+            }
             Touch::Surfaces(one) => {
                 let told_of = vec![Told::Surfaces(one.outputs), Told::Elsewhere, Told::Elsewhere];
                 (surfaces(place, one)?, told_of)
@@ -188,7 +191,7 @@ fn surfaces<T: Real>(place: usize, surfaces: &Surfaces) -> Result<Vec<Contact<T>
 const NO_CONTACT: &str = "the numbers of a contact make none";
 
 /// A contact along a coordinate, and where what is told of it is.
-fn stopped<M, L>(mechanism: &M, stop: &Stop) -> Result<(Vec<Contact<M::Scalar>>, Vec<Told>), String>
+fn stopped<M, L>(mechanism: &M, stop: &Stop) -> Result<(Contact<M::Scalar>, Told), String>
 where
     M: JointSpace<Scalar: Real>,
     L: Pushed<M>,
@@ -207,7 +210,7 @@ where
         .with_stops(stop.ends.map(constant), constant(stop.restitution))
         .and_then(|contact| contact.with_friction(levels[0], levels[1]))
         .and_then(|contact| contact.with_loaded_friction(coefficients[0], coefficients[1]));
-    Ok((vec![contact.ok_or(NO_CONTACT)?], vec![told]))
+    Ok((contact.ok_or(NO_CONTACT)?, told))
 }
 
 /// Where the turn reference of a stop's coordinate is in the maximal state.

@@ -92,6 +92,7 @@ fn a_request_comes_back_bit_by_bit() {
                     levels: [0.0, AWKWARD[5]],
                     coefficients: [AWKWARD[1], AWKWARD[0]],
                     reaction: correct_every.map(|_| 7),
+                    seen: correct_every.map(|_| 9),
                 })],
             },
             measure_for: correct_every.map(|every| 3.0 * every),

@@ -1,6 +1,6 @@
 //! Runs random model files with rigid contacts by `gyro simulate`, built beside this program, each for a limited time:
-//! `scenes [--joints] [--print] FIRST COUNT [SECONDS]`. Bodies are thrown upon each other; with `--joints` contacts are on
-//! joint coordinates, of loops too, and motions in joint coordinates, in maximal ones and by `rodas4` are compared.
+//! `scenes [--joints] [--print] FIRST COUNT [SECONDS]`. Bodies are thrown upon each other; with `--joints` contacts are
+//! on joint coordinates, of loops too, and motions in joint coordinates, in maximal ones and by `rodas4` are compared.
 #![allow(clippy::print_stdout, reason = "it is what it is for")]
 
 use serde_json::Value;

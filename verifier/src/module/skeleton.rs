@@ -53,13 +53,7 @@ impl Has {
         };
         Self {
             traits: Group::all().map(Group::trait_name).filter(is_there).collect(),
-            choice: if text.contains("gyro_sim::charts") {
-                Choice::Charts
-            } else if text.contains("gyro_sim::joint_partition") {
-                Choice::Joints
-            } else {
-                Choice::Pivoting
-            },
+            choice: if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Joints },
             corrected: Corrected {
                 has_derivative: !text.contains("gyro_sim::Dynamics::derivative(self"),
                 is_cut: text.contains("out.copy_from_slice("),

@@ -18,49 +18,6 @@ impl ModuleWriter<'_> {
         match self.scheduled.partition {
             PartitionForm::Charts => self.by_charts(),
             PartitionForm::Joints => self.by_joints(has_poses),
-            PartitionForm::Pivoting => self.by_pivoting(has_poses),
-        }
-    }
-
-    /// Full pivoting at run time.
-    fn by_pivoting(&self, has_poses: bool) -> TokenStream {
-        let name = ident(self.type_name);
-        let [n_constraints, n_positions] =
-            [Space::Constraints.len(self.counts()), 7 * self.counts().bodies].map(index);
-        let clearance = has_poses.then(|| {
-            quote! {
-                fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {
-                    ::core::option::Option::Some(
-                        gyro_sim::pivoting::clearance::<_, #n_constraints, #n_positions>(self, t, y)
-                    )
-                }
-            }
-        });
-        quote! {
-            impl<T: gyro_sim::Real> gyro_sim::Partition for #name<T> {
-                type Independent = gyro_sim::pivoting::Pivots<#n_constraints, #n_positions>;
-
-                fn independent(&self, t: T, y: &Self::State) -> Self::Independent {
-                    gyro_sim::pivoting::independent(self, t, y)
-                }
-                fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-                    gyro_sim::pivoting::follow(self, t, y, choice)
-                }
-                fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {
-                    gyro_sim::pivoting::is_met(self, t, y, phi)
-                }
-                fn newton_step(
-                    &self, t: T, choice: &Self::Independent, y: &mut Self::State,
-                ) -> ::core::result::Result<(), gyro_sim::Error> {
-                    gyro_sim::pivoting::newton_step(self, t, choice, y)
-                }
-                fn solve_velocities(
-                    &self, t: T, choice: &Self::Independent, y: &mut Self::State,
-                ) -> ::core::result::Result<(), gyro_sim::Error> {
-                    gyro_sim::pivoting::solve_velocities(self, t, choice, y)
-                }
-                #clearance
-            }
         }
     }
 

@@ -1,4 +1,4 @@
-//! The coordinate partition, in one of three ways.
+//! The coordinate partition, in one of two ways.
 
 use super::mechanism::n_state;
 use super::pieces::lines;
@@ -12,8 +12,6 @@ pub enum Choice {
     Charts,
     /// Through the coordinates of a tree of joints.
     Joints,
-    /// Full pivoting at run time.
-    Pivoting,
 }
 
 pub(super) fn partition(model: &Model, name: &str, choice: Choice, joints: Option<&JointLayout>) -> String {
@@ -22,7 +20,6 @@ pub(super) fn partition(model: &Model, name: &str, choice: Choice, joints: Optio
     match choice {
         Choice::Charts => by_charts(model, name),
         Choice::Joints => by_joints(name, has_poses),
-        Choice::Pivoting => by_pivoting(model, name, has_poses),
     }
 }
 
@@ -89,45 +86,6 @@ fn by_joints(name: &str, has_poses: bool) -> String {
                 gyro_sim::joint_partition::solve_velocities(self, t, y);
                 Ok(())
             }}
-            {clearance}
-        }}"
-    )
-}
-
-fn by_pivoting(model: &Model, name: &str, has_poses: bool) -> String {
-    let n = model.coordinate_bodies().len();
-    let (n_constraints, n_positions) = (model.rows().len() + n, 7 * n);
-    let solves = lines(["newton_step", "solve_velocities"].map(|solve| {
-        format!(
-            "fn {solve}(&self, t: T, choice: &Self::Independent, y: &mut Self::State) -> {SOLVED} {{
-                gyro_sim::pivoting::{solve}(self, t, choice, y)
-            }}"
-        )
-    }));
-    let clearance = if has_poses {
-        format!(
-            "fn clearance(&self, t: T, y: &Self::State) -> ::core::option::Option<gyro_sim::Clearance<T>> {{
-                ::core::option::Option::Some(
-                    gyro_sim::pivoting::clearance::<_, {n_constraints}, {n_positions}>(self, t, y)
-                )
-            }}"
-        )
-    } else {
-        String::new()
-    };
-    format!(
-        "impl<T: gyro_sim::Real> gyro_sim::Partition for {name}<T> {{
-            type Independent = gyro_sim::pivoting::Pivots<{n_constraints}, {n_positions}>;
-            fn independent(&self, t: T, y: &Self::State) -> Self::Independent {{
-                gyro_sim::pivoting::independent(self, t, y)
-            }}
-            fn follow(&self, t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {{
-                gyro_sim::pivoting::follow(self, t, y, choice)
-            }}
-            fn is_met(&self, t: T, y: &Self::State, phi: &Self::Constraints) -> bool {{
-                gyro_sim::pivoting::is_met(self, t, y, phi)
-            }}
-            {solves}
             {clearance}
         }}"
     )
