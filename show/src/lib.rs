@@ -26,7 +26,7 @@ mod page;
 mod run;
 
 pub use live::{Live, Setting, Slope};
-pub use mechanism::{Amount, Body, Effort, Joint, JointEnd, Link, Load, Mechanism, Shape, Support};
+pub use mechanism::{Amount, Body, Effort, Joint, JointEnd, Link, Load, Mechanism, Shape, Support, Touch};
 pub use mesh::Mesh;
 pub use page::{MARK, page};
 pub use run::{Column, Reaction, Run, Scale, Scene};

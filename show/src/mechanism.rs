@@ -21,6 +21,8 @@ pub struct Mechanism {
     pub springs: Vec<usize>,
     /// Forces at points of bodies.
     pub loads: Vec<Load>,
+    /// Where bodies touch.
+    pub touches: Vec<Touch>,
     /// What acts along the coordinates of joints.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub efforts: Vec<Effort>,
@@ -165,6 +167,26 @@ impl Default for Amount {
     fn default() -> Self {
         Self::Value(0.0)
     }
+}
+
+/// What acts between two bodies where they touch: on the second, and its opposite on the first at the same place.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Touch {
+    /// Its name.
+    pub name: String,
+    /// Indices of both bodies.
+    pub bodies: [usize; 2],
+    /// Euler parameters `(e0, e1, e2, e3)` of the frame in the first body, by whose axes force and torque are given.
+    pub orientation: [f64; 4],
+    /// If the first touches with a plane, a point of that, in its body's frame, m; z points away from it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plane: Option<[f64; 3]>,
+    /// Point of the second body about which the torque is, m.
+    pub point: [f64; 3],
+    /// N.
+    pub force: [Amount; 3],
+    /// N·m.
+    pub torque: [Amount; 3],
 }
 
 /// A force at a point of a body, and a torque.

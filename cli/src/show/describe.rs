@@ -47,6 +47,7 @@ pub(super) fn mechanism(model: &Model, meshes: Meshes) -> gyro_show::Mechanism {
         links: links(model),
         springs: springs(model),
         loads: loads(model),
+        touches: laws::touches(model),
         efforts: efforts::efforts(model),
         meshes: meshes.meshes,
     }
@@ -91,7 +92,7 @@ fn drawn(model: &Model, meshes: &Meshes, shape: &Shape) -> gyro_show::Shape {
 }
 
 /// Euler parameters of unit length; of none, the identity.
-fn upright(p: [f64; 4]) -> [f64; 4] {
+pub(super) fn upright(p: [f64; 4]) -> [f64; 4] {
     let length = p.iter().map(|e| e * e).sum::<f64>().sqrt();
     if length > 0.0 { p.map(|e| e / length) } else { [1.0, 0.0, 0.0, 0.0] }
 }

@@ -60,9 +60,9 @@ pub trait Forced<M = ()>: Ode<M> {
     fn shares(&self, _model: &M) -> bool {
         false
     }
-    /// Writes value, rate and acceleration of these contacts under these forces: of a coordinate ([`Contact::seen`]),
-    /// or of two surfaces ([`Contact::surfaces`]) a gap, m, and the velocities of slip, m/s, whose values are zero. What
-    /// forces do is dual to that: the power of a force is its product with the rate.
+    /// Writes value, rate and acceleration of these contacts under these forces: of a coordinate
+    /// ([`Contact::seen`]), or of two surfaces ([`Contact::surfaces`]) a gap, m, and the velocities of slip, m/s,
+    /// whose values are zero. What forces do is dual to that: the power of a force is its product with the rate.
     fn seen(
         &self,
         _model: &M,

@@ -110,6 +110,34 @@ const tests = {
     return open(browser, at('crane'));
   },
 
+  async 'contacts carry what lies on them, where it lies, and their way is drawn'(browser) {
+    const page = await open(browser, at('crates'));
+    await page.keyboard.press('a');
+    await page.keyboard.press('t');
+    const { pushes, ways, masses, places } = await page.evaluate(() => {
+      const { picture, scenes: [scene], clock } = globalThis.gyroPage;
+      const t = scene.time[scene.n - 1];
+      clock.seek(t);
+      picture.draw();
+      const drawn = picture.arrows.drawn.filter(({ source }) => source.kind === 'contact');
+      return {
+        pushes: drawn.map(({ source, arrows }) => [...source.at(t), arrows.every((arrow) => arrow.visible)]),
+        ways: picture.trails.lines.filter(({ ends }) => ends?.at(-1) > 100).length,
+        masses: scene.mechanism.bodies.map(({ mass }) => mass).slice(1),
+        places: scene.bodies.slice(1).map(({ pose }) => pose.slice(0, 3).map((channel) => channel.at(-1))),
+      };
+    });
+    assert.ok(pushes.length === 3 && ways === 3, `${pushes.length} ${ways}`);
+    pushes.forEach(([[place, force], [, other], visible], k) => {
+      const above = masses.slice(k).reduce((sum, mass) => sum + mass, 0);
+      assert.ok(visible && Math.abs(force[2] / (9.81 * above) - 1) < 1e-2 && other[2] === -force[2], `${k}: ${force} under ${above} kg`);
+      // Below the crate that it carries, and near it.
+      const off = place.map((x, axis) => x - places[k][axis]);
+      assert.ok(off[2] < -0.05 && Math.hypot(...off) < 0.2, `${k}: ${off}`);
+    });
+    return page;
+  },
+
   async 'meshes are where and as large as their model file says'(browser) {
     const page = await open(browser, at('wedge'));
     const box = await page.evaluate(() => {

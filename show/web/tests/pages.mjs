@@ -10,6 +10,7 @@ const OTHERS = [
   ['show/web/tests/wedge.toml', [], 'wedge'],
   ['examples/laws/quadrotor.toml', ['--t-end', '1'], 'quadrotor'],
   ['examples/laws/crane.toml', [], 'crane'],
+  ['examples/contact/crates.toml', [], 'crates'],
   ['show/web/tests/thrown.toml', ['--tolerance', '1e-9'], 'thrown'],
   ['examples/pendulum.toml', ['--t-end', '100', '--every', '0.001', '--step', '0.001'], 'many'],
 ];

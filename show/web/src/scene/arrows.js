@@ -1,16 +1,17 @@
-// Forces as arrows: weight, springs and dampers, loads and motors, reactions where the run has them. Torques are arcs about
-// their axis. Forces are all to one scale, and so are torques.
+// Forces as arrows: weight, springs and dampers, loads and motors, contacts, reactions where the run has them. Torques are
+// arcs about their axis. Forces are all to one scale, and so are torques.
 import { Vector3 } from 'three';
 import { amountOf, poseAt, valueAt } from '../data.js';
 import { add, cross, distance, dot, inGlobal, length, scale, turn, unit } from '../vector.js';
 import { alongJoints } from './efforts.js';
+import { touched } from './touches.js';
 import { looks } from './forms.js';
 import { arc, arrow } from './solids.js';
 
 const LONGEST = 0.32;
 // Of arcs, so that a motor's goes around a spring's.
 const RADII = { link: 0.085, load: 0.11 };
-const COLOURS = { weight: '#8a8f98', link: '#2e9e5b', load: '#d98a1f', reaction: '#c8403a' };
+const COLOURS = { weight: '#8a8f98', link: '#2e9e5b', load: '#d98a1f', contact: '#8257c9', reaction: '#c8403a' };
 
 // The force with which a spring and damper pulls at its second end, and that end's place.
 function linkForce(scene, link, t) {
@@ -51,6 +52,13 @@ function sources(scene) {
       return [[inGlobal(pose, load.point), load.in_body ? turn(pose, at(torque, t)) : at(torque, t)]];
     } });
   }
+  for (const touch of mechanism.touches) {
+    const at = touched(scene, touch);
+    found.push({ kind: 'contact', twice: true, at: (t) => {
+      const [place, force] = at(t);
+      return [[place, force], [place, scale(force, -1)]];
+    } });
+  }
   found.push(...alongJoints(scene));
   for (const { joint, column } of scene.reactions) {
     const [first, second] = mechanism.joints[joint].ends;
@@ -88,8 +96,11 @@ export class Arrows {
     this.most = { false: 0, true: 0 };
     this.drawn = this.all.flatMap(({ scene }) => sources(scene).map((source) => {
       const turns = Boolean(source.turns);
-      for (const t of looks(scene, 100)) for (const [, force] of source.at(t)) this.most[turns] = Math.max(this.most[turns], length(force) || 0);
-      const arrows = Array.from({ length: source.twice ? 2 : 1 }, () => (turns ? arc(COLOURS[source.kind], RADII[source.kind]) : arrow(COLOURS[source.kind])));
+      const sizes = looks(scene, 100).flatMap((t) => source.at(t).map(([, force]) => length(force) || 0)).sort((a, b) => a - b);
+      // Impacts are none of what rests.
+      const place = source.kind === 'contact' ? Math.floor(0.9 * sizes.length) : sizes.length - 1;
+      this.most[turns] = Math.max(this.most[turns], sizes[place] ?? 0);
+      const arrows = Array.from({ length: source.twice ? 2 : 1 }, () => (turns ? arc(COLOURS[source.kind], RADII[source.kind]) : arrow(COLOURS[source.kind], source.kind === 'contact')));
       arrows.forEach((each) => { each.traverse((part) => { part.raycast = () => {}; }); this.world.add(each); });
       return { source, arrows };
     }));
@@ -100,7 +111,7 @@ export class Arrows {
     for (const { source, arrows } of this.drawn) {
       source.at(t).forEach(([at, force], k) => {
         // Small forces are not lost beside large ones: the root.
-        const long = LONGEST * Math.sqrt(length(force) / (this.most[Boolean(source.turns)] || 1));
+        const long = LONGEST * Math.min(1, Math.sqrt(length(force) / (this.most[Boolean(source.turns)] || 1)));
         arrows[k].userData.point(new Vector3(...at).divideScalar(this.size), new Vector3(...force), long);
       });
     }

@@ -222,7 +222,7 @@ export function picture(place, scenes, clock, theme, numbers) {
   resize();
   controls.addEventListener('change', ask);
   clock.listen(ask);
-  return { canvas, camera, controls, home, draw, renew, remake, boxes, all, arrows, gl, points, under, png, video, views, look };
+  return { canvas, camera, controls, home, draw, renew, remake, boxes, all, arrows, trails, gl, points, under, png, video, views, look };
 }
 
 const most = (points, value) => points.reduce((best, p) => Math.max(best, value(p)), -Infinity);

@@ -271,12 +271,16 @@ export function solid(part, materials, down) {
   return make ? make(part, materials, down) : new Group();
 }
 
-export function arrow(colour) {
-  const material = new MeshStandardMaterial({ color: colour, roughness: 0.6, emissive: colour, emissiveIntensity: 0.25 });
+// An arrow; one that lies within bodies is seen through them.
+export function arrow(colour, within = false) {
+  const material = new MeshStandardMaterial({ color: colour, roughness: 0.6, emissive: colour, emissiveIntensity: 0.25, depthTest: !within });
   const group = new Group();
   const shaft = mesh(new CylinderGeometry(0.008, 0.008, 1, 10), material, [0, 0.5, 0]);
   const head = mesh(new ConeGeometry(0.024, 0.06, 16), material);
-  for (const part of [shaft, head]) part.castShadow = false;
+  for (const part of [shaft, head]) {
+    part.castShadow = false;
+    part.renderOrder = Number(within);
+  }
   group.add(shaft, head);
   group.userData.point = (from, force, long) => {
     group.visible = long > 0.01;

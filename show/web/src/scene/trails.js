@@ -1,8 +1,9 @@
-// The way that each body has gone: of its mass centre or of the joint point that goes farthest.
-import { BufferGeometry, Float32BufferAttribute, Group, Line, LineBasicMaterial } from 'three';
+// The way that each body has gone: of its mass centre or of the joint point that goes farthest; and where bodies touched.
+import { BufferGeometry, Float32BufferAttribute, Group, Line, LineBasicMaterial, LineSegments } from 'three';
 import { indexAt, poseAt } from '../data.js';
-import { distance, inGlobal } from '../vector.js';
+import { distance, inGlobal, length } from '../vector.js';
 import { looks } from './forms.js';
+import { touched } from './touches.js';
 
 const POINTS = 3000;
 
@@ -57,11 +58,33 @@ export class Trails {
       group.add(line);
       found.push({ line, times });
     });
+    for (const touch of scene.mechanism.touches) {
+      const at = touched(scene, touch);
+      const all = times.map((t) => at(t));
+      // Where next to nothing acts, nothing tells where.
+      const least = 1e-3 * Math.max(...all.map(([, force]) => length(force)));
+      const pushes = ([, force]) => length(force) > least;
+      // From sample to sample where both touch; so many ends of pieces there are up to each.
+      const [positions, ends] = [[], [0]];
+      for (let k = 1; k < all.length; k++) {
+        if (pushes(all[k - 1]) && pushes(all[k])) positions.push(...all[k - 1][0], ...all[k][0]);
+        ends.push(positions.length / 3);
+      }
+      const geometry = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(positions, 3));
+      const line = new LineSegments(geometry, new LineBasicMaterial({ color: '#8257c9' }));
+      line.frustumCulled = false;
+      line.raycast = () => {};
+      group.add(line);
+      found.push({ line, times, ends });
+    }
     return found;
   }
 
   show(t) {
     if (!this.on) return;
-    for (const { line, times } of this.lines) line.geometry.setDrawRange(0, indexAt(times, t) + 1);
+    for (const { line, times, ends } of this.lines) {
+      const index = indexAt(times, t);
+      line.geometry.setDrawRange(0, ends ? ends[index] : index + 1);
+    }
   }
 }
