@@ -5,6 +5,7 @@ mod efforts;
 mod laws;
 mod live;
 pub(crate) mod meshes;
+mod touches;
 
 use crate::args::{Change, ShowArgs, SimulateArgs};
 use crate::failure::Failure;

@@ -1,6 +1,7 @@
 //! A model and its samples as the page wants them: plain data.
 
 use super::meshes::Meshes;
+use super::touches::{touches, upright};
 use super::{efforts, laws};
 use crate::columns::{self, orientation, scalar};
 use crate::events;
@@ -47,7 +48,7 @@ pub(super) fn mechanism(model: &Model, meshes: Meshes) -> gyro_show::Mechanism {
         links: links(model),
         springs: springs(model),
         loads: loads(model),
-        touches: laws::touches(model),
+        touches: touches(model),
         efforts: efforts::efforts(model),
         meshes: meshes.meshes,
     }
@@ -89,12 +90,6 @@ fn drawn(model: &Model, meshes: &Meshes, shape: &Shape) -> gyro_show::Shape {
     let orientation = upright(model.values(&shape.orientation));
     let color = shape.color.map(|[red, green, blue]| format!("#{red:02x}{green:02x}{blue:02x}"));
     gyro_show::Shape { kind, size, mesh, color, position: model.values(&shape.position), orientation }
-}
-
-/// Euler parameters of unit length; of none, the identity.
-pub(super) fn upright(p: [f64; 4]) -> [f64; 4] {
-    let length = p.iter().map(|e| e * e).sum::<f64>().sqrt();
-    if length > 0.0 { p.map(|e| e / length) } else { [1.0, 0.0, 0.0, 0.0] }
 }
 
 /// With unit vectors, the zero direction without its part along the axis.

@@ -1,10 +1,7 @@
 //! Forces by formula, as the page has them: the run tells what they give.
 
-use super::describe::upright;
-use gyro_model::{
-    Bushing, Force, ForceKind, Formula, Model, Number, Output, OutputKind, Seen, Shape, ShapeKind,
-};
-use gyro_show::{Amount, Touch};
+use gyro_model::{Bushing, Force, ForceKind, Formula, Model, Number, Output, OutputKind, Seen};
+use gyro_show::Amount;
 
 /// Has the run tell what formulas of forces along coordinates, of loads, of links and of contacts give, for arrows and
 /// plots; what the model file tells itself is not told twice.
@@ -37,7 +34,7 @@ pub(super) fn with_laws(model: &mut Model) {
 }
 
 /// Force and torque of a bushing that is nothing else, and whose formulas do not ask where it is: of a contact.
-fn touching(force: &Force) -> Option<[&Number; 6]> {
+pub(super) fn touching(force: &Force) -> Option<[&Number; 6]> {
     let ForceKind::Bushing(bushing) = &force.kind else { return None };
     let Bushing { along, about, moment, .. } = &**bushing;
     let asks = |number: &&Number| {
@@ -50,32 +47,6 @@ fn touching(force: &Force) -> Option<[&Number; 6]> {
     let springs = [&along.stiffness, &along.damping, &about.stiffness, &about.damping, &about.load];
     let is_bare = springs.into_iter().flatten().all(Number::is_zero) && !own.iter().any(asks);
     (is_bare && own.iter().any(|number| number.formula().is_some())).then_some(own)
-}
-
-/// Where bodies touch, as the page has it.
-pub(super) fn touches(model: &Model) -> Vec<Touch> {
-    let one = |force: &Force| {
-        let [x, y, z, mx, my, mz] = touching(force)?.map(|number| told(model, number));
-        let ForceKind::Bushing(bushing) = &force.kind else { return None };
-        let (first, second) = (&bushing.first, &bushing.second);
-        let axes = |p: Option<&[Number; 4]>| p.map_or([1.0, 0.0, 0.0, 0.0], |p| upright(model.values(p)));
-        let at: [f64; 3] = model.values(&first.point);
-        let orientation = axes(first.orientation.as_ref());
-        let is_it = |shape: &Shape| {
-            let is_plane = matches!(shape.kind, ShapeKind::Plane(_)) && model.values(&shape.position) == at;
-            is_plane && axes(Some(&shape.orientation)) == orientation
-        };
-        Some(Touch {
-            name: force.name.clone(),
-            bodies: [first.body, second.body],
-            orientation,
-            plane: model.bodies[first.body].shapes.iter().any(is_it).then_some(at),
-            point: model.values(&second.point),
-            force: [x, y, z],
-            torque: [mx, my, mz],
-        })
-    };
-    model.forces.iter().filter_map(one).collect()
 }
 
 /// Adds an output, of another name if this one is taken.
