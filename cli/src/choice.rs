@@ -161,7 +161,9 @@ impl Choice<'_> {
     /// Whether rodas4 can take over.
     fn can_turn(&self, approach: &Approach) -> bool {
         let turned = Approach { integrator: Integrator::Rodas4, ..*approach };
-        approach.tolerance.is_some() && self.offers.refused_method(&turned).is_none()
+        // As surfaces come to rest direction changes fast, which is over soon.
+        let can_be = !self.offers.touches && self.offers.refused_method(&turned).is_none();
+        approach.tolerance.is_some() && can_be
     }
 }
 

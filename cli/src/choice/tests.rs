@@ -49,15 +49,21 @@ fn is_contradictory(args: &SimulateArgs, offers: &Offers) -> bool {
     let coordinates = args.coordinates;
     (args.tolerance.is_some() && args.integrator() == Some(Integrator::Rk4))
         || (coordinates == Some(Coordinates::Joint) && !offers.joint_space)
-        || (args.integrator() == Some(Integrator::Rodas4) && (!offers.derivatives || offers.touches))
-        || (offers.touches && (coordinates == Some(Coordinates::Maximal) || !offers.joint_space))
+        || (args.integrator() == Some(Integrator::Rodas4) && !offers.derivatives)
+        || (offers.touches && !offers.joint_space)
         || (args.tolerance.is_some_and(|tolerance| tolerance < offers.finest_tolerance()))
 }
 
 /// Contradictions of a file with its own mechanism.
 fn is_unfit(page: &Simulation, args: &SimulateArgs, offers: &Offers) -> bool {
-    let is_rodas = page.method == Some("rodas4") && args.integrator().is_none();
-    offers.touches && (page.coordinates == Some("maximal") && args.coordinates.is_none() || is_rodas)
+    let of_page = |word: &str| word == "rodas4" && args.integrator().is_none();
+    let is_rodas = args.integrator() == Some(Integrator::Rodas4) || page.method.is_some_and(of_page);
+    let is_weighted = page.correction.as_deref() == Some("mass-weighted") && args.correction().is_none();
+    let is_maximal = match args.coordinates {
+        None => page.coordinates == Some("maximal"),
+        typed => typed == Some(Coordinates::Maximal),
+    };
+    offers.touches && is_maximal && (is_rodas || is_weighted)
 }
 
 #[test]
@@ -142,6 +148,6 @@ fn where_nothing_is_said_it_is_what_an_expert_takes() {
     assert!(!leaves, "there is nothing to turn to");
     let single = Offers { epsilon: f64::from(f32::EPSILON), ..Offers::ALL };
     assert_eq!(say("--precision f32", &single).0, "dop853, joint coordinates, tolerance 1e-6");
-    assert!(!say("", &Offers { touches: true, ..Offers::ALL }).1, "contacts are for explicit methods");
+    assert!(!say("", &Offers { touches: true, ..Offers::ALL }).1, "what touches is not stiff for long");
     assert!(!say("--integrator dop853", &Offers::ALL).1, "what is asked for is not left");
 }
