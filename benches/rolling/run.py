@@ -88,7 +88,6 @@ def exudyn_disc(steps, penalty=None):
         settings.timeIntegration.endTime = END
         settings.timeIntegration.numberOfSteps = steps
         settings.timeIntegration.verboseMode = 0
-        settings.displayStatistics = False
         settings.solutionSettings.writeSolutionToFile = False
         settings.timeIntegration.newton.useModifiedNewton = True
         began = time.perf_counter()
