@@ -55,6 +55,13 @@
 //! complementarity problem in cones, which is solved by relaxation and by Newton's method; impacts have friction, and
 //! restitution after Newton or Poisson. What rests is projected after each step: neither gap nor slip drifts.
 //!
+//! # Coordinates of loops
+//! A coordinate need not be an element of the state: the system may tell its value, rate and acceleration
+//! ([`Contact::seen`]), as of a joint that closes a loop. It is held to rounding. Where coordinates depend on each other
+//! ([`Forced::shares`]), forces of what holds are found as those of surfaces: what one of them cannot hold others do,
+//! what is at the bound of its friction pulls on while others hold it, and a coordinate that no friction can hold, as
+//! in the dead centre of a linkage, passes through rest.
+//!
 //! # What is solved when phases change
 //! * **Impacts.** All contacts that are hit, and those rested on, at one instant are resolved together: impulses P with
 //!   the rates `u⁺ = u⁻ + W P` after them, P ≥ 0, `u⁺ + e u⁻ ≥ 0`, one of both zero (outward positive). A stop that is

@@ -107,13 +107,16 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             return;
         }
         let local = self.local(model, (t, y), held, &mut scratch[0]);
-        let slowed = self.slowed(&local, self.loads(model, (t, y), held).as_ref());
-        let noise = self.noise(model, (t, y), &mut scratch[0]);
-        let passes = |k: usize| {
-            let least = larger(noise, T::constant(FEEBLE) * local.bias[k].abs());
-            self.contacts[k].role == Role::Seen && !ends[k].is_finite() && slowed[k] <= least
+        let rubs = |k: usize| self.contacts[k].role == Role::Seen && held[k] && !ends[k].is_finite();
+        let passes: [bool; N] = if (0..N).any(rubs) {
+            let slowed = self.slowed(&local, self.loads(model, (t, y), held).as_ref());
+            let noise = self.noise(model, (t, y), &mut scratch[0]);
+            let least = local.bias.map(|bias| larger(noise, T::constant(FEEBLE) * bias.abs()));
+            from_fn(|k| rubs(k) && slowed[k] <= least[k])
+        } else {
+            [false; N]
         };
-        let held = &from_fn(|k| held[k] && !self.spent[k] && !passes(k));
+        let held = &from_fn(|k| held[k] && !self.spent[k] && !passes[k]);
         let places = self.places(model, (t, y));
         let is_told = |k: usize| matches!(self.contacts[k].role, Role::Gap | Role::Seen);
         let is_off = |k: usize| held[k] && is_told(k) && ends[k].is_finite();

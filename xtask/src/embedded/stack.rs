@@ -23,6 +23,9 @@ const INTERRUPT: u64 = 4 * (8 + 18 + 1);
 /// The interrupt that the firmware has.
 const HANDLER: &str = "SysTick";
 
+/// What the linker puts between functions, `d4d4`, reads as a branch `bmi.n` so far back.
+const FILLER: u64 = 0x54;
+
 /// Functions in assembly, of which the compiler says nothing, and the bytes that they keep by their disassembly.
 const ASSEMBLY: [(&str, u64); 3] = [("Reset", 8), ("HardFault", 8), ("__aeabi_uldivmod", 24)];
 
@@ -141,12 +144,16 @@ impl Graph {
 impl Function {
     /// Notes where a line of the disassembly calls or branches to.
     fn instruction(&mut self, line: &str) {
-        let Some((_, instruction)) = line.split_once(":\t") else { return };
+        let Some((address, instruction)) = line.split_once(":\t") else { return };
         let mut words = instruction.split_whitespace();
         let (Some(operation), Some(operand)) = (words.next(), words.last_address()) else {
             self.is_indirect |= is_call_by_pointer(instruction);
             return;
         };
+        let address = u64::from_str_radix(address.trim(), 16).unwrap_or(0);
+        if operation == "bmi.n" && operand.wrapping_add(FILLER) == address {
+            return;
+        }
         if operation == "bl" || operation == "blx" {
             self.callees.insert(operand);
         } else if operation.starts_with('b') || operation.starts_with("cb") {

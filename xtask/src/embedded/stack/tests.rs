@@ -41,6 +41,8 @@ fn recursion_pointers_and_unknown_functions_are_found() {
     assert!(Graph::new(&direct, &sizes(0)).longest("Reset").unwrap_err().contains("is recursive"));
     let a_loop = to_itself("432:\tbne.n\t430 <flat>");
     assert!(Graph::new(&a_loop, &sizes(0)).longest("Reset").is_ok());
+    let filled = format!("{CODE} 464:\tbmi.n\t410 <main>\n");
+    assert!(Graph::new(&filled, &sizes(0)).longest("Reset").is_ok());
     let pointer = CODE.replace("424:\tbx\tlr", "424:\tblx\tr3");
     assert_eq!(Graph::new(&pointer, &sizes(0)).indirect(), ["deep"]);
     assert!(Graph::new(CODE, &BTreeMap::new()).longest("main").unwrap_err().contains("not known"));
