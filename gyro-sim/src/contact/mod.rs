@@ -58,9 +58,9 @@
 //! # Coordinates of loops
 //! A coordinate need not be an element of the state: the system may tell its value, rate and acceleration
 //! ([`Contact::seen`]), as of a joint that closes a loop. It is held to rounding. Where coordinates depend on each
-//! other ([`Forced::shares`]), forces of what holds are found as those of surfaces: what one of them cannot hold others do,
-//! what is at the bound of its friction pulls on while others hold it, and a coordinate that no friction can hold, as
-//! in the dead centre of a linkage, passes through rest.
+//! other ([`Forced::shares`]), forces of what holds are found as those of surfaces: what one of them cannot hold
+//! others do, what is at the bound of its friction pulls on while others hold it, and a coordinate that no friction
+//! can hold, as in the dead centre of a linkage, passes through rest.
 //!
 //! # What is solved when phases change
 //! * **Impacts.** All contacts that are hit, and those rested on, at one instant are resolved together: impulses P with
