@@ -109,7 +109,7 @@ impl Choice<'_> {
             (None, Some(coordinates)) if offers.touches || !(is_corrected || lacks) => {
                 return (coordinates, None);
             }
-            _ if offers.touches => (Coordinates::Joint, "contacts need them".to_owned()),
+            _ if offers.touches => (Coordinates::Joint, "the mechanism has them".to_owned()),
             _ if is_corrected => (Coordinates::Maximal, "a correction is asked for".to_owned()),
             _ if !offers.joint_space => (Coordinates::Maximal, self.without_joints()),
             _ if page.correction.is_some() => {

@@ -154,9 +154,10 @@ impl<T: Real, const N: usize> Ledger<T, N> {
             jumped.is_none() && moves && (stops || is_slow)
         });
         // What has rested on a stop does not hit it.
-        let before: [T; N] = core::array::from_fn(|k| match jumped {
-            Some((rates, _)) if rates[k] == zero => zero,
-            _ if contacts[k].role == Role::Coordinate => at(y.as_ref(), contacts[k].rate),
+        let before: [T; N] = core::array::from_fn(|k| match (contacts[k].role, jumped) {
+            (Role::Coordinate, Some((rates, _))) if rates[k] == zero => zero,
+            (Role::Coordinate, _) => at(y.as_ref(), contacts[k].rate),
+            (_, Some(_)) if phases[k].is_held() => zero,
             _ => places[k][1],
         });
         let touched = [&at_lower, &at_upper];

@@ -296,7 +296,13 @@ pub(super) fn watch(model: &mut Model) {
             ("moves_rate", OutputKind::Rate(rate)),
         ];
         let first = model.outputs.len();
-        model.outputs.extend(watched.map(|(what, kind)| Output { name: format!("{name}_{what}"), kind }));
+        for (what, kind) in watched {
+            let mut name = format!("{name}_{what}");
+            while model.outputs.iter().any(|output| output.name == name) {
+                name.push('_');
+            }
+            model.outputs.push(Output { name, kind });
+        }
         model.contacts[index].seen = Some(first);
     }
 }

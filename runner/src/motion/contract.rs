@@ -16,7 +16,7 @@ use std::fmt::Debug;
 
 /// Why there is no motion with contacts.
 pub(super) const NOT_TOUCHING: &str =
-    "rigid stops and friction that sticks are for generated code in joint coordinates, and explicit methods";
+    "this program was compiled for runs without rigid contacts, or its engine has none";
 
 /// Refuses contacts.
 pub(super) fn not_touching(contacts: &[Touch]) -> Result<(), String> {
@@ -92,8 +92,7 @@ pub type Begun<M> = Result<Box<dyn Motion<M>>, String>;
 
 /// What there is to begin motions of a mechanism with: more for some than for others.
 pub trait MotionBuilder<M: Partition<Scalar: Real>> {
-    /// A motion from a maximal state at time zero, or the reason why there is none. Contacts are for methods that are
-    /// explicit, in joint coordinates.
+    /// A motion from a maximal state at time zero, or the reason why there is none: not all have contacts.
     ///
     /// # Errors
     /// What the mechanism lacks for this approach.
