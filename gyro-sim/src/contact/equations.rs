@@ -315,8 +315,9 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         let change = solve(&right);
         forces = from_fn(|k| if held[k] { forces[k] + change[k] } else { forces[k] });
         self.rub(&mut forces, &pulls);
-        let levels = self.levels(&forces);
-        let Some(loads) = loads else { return Acting { forces, levels, jam: None } };
+        let Some(loads) = loads else {
+            return Acting { levels: self.levels(&forces, None), forces, jam: None };
+        };
         let [zero, one] = [0.0, 1.0].map(T::constant);
         let grows: [T; N] = from_fn(|k| match self.phases[k] {
             Phase::Up | Phase::Down => self.contacts[k].coefficients[0],
@@ -335,26 +336,26 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         });
         let slopes = from_fn(|k| from_fn(|j| loads.along(k, &responses[j])));
         match (Growth { coefficients: grows, loads: loads.at(&forces), slopes }).magnitudes() {
-            Err(jam) => Acting { forces, levels, jam: Some(jam) },
+            Err(jam) => Acting { levels: self.levels(&forces, None), forces, jam: Some(jam) },
             Ok(magnitudes) => {
                 let forces =
                     from_fn(|i| (0..N).fold(forces[i], |force, j| force + responses[j][i] * magnitudes[j]));
-                let loads = loads.at(&forces);
-                let levels = self.levels(&forces);
-                let levels = from_fn(|k| match self.contacts[k].is_loaded() {
-                    true => levels[k] + self.contacts[k].coefficients[1] * size(&loads[k]),
-                    false => levels[k],
-                });
-                Acting { forces, levels, jam: None }
+                Acting { levels: self.levels(&forces, Some(loads)), forces, jam: None }
             }
         }
     }
 
-    /// The static levels of friction, but for what reactions add.
-    fn levels(&self, forces: &[T; N]) -> [T; N] {
-        self.contacts.map(|contact| match contact.slip() {
-            Some((gap, _)) => contact.coefficients[1] * at(forces, gap),
-            None => contact.levels[1],
+    /// The static levels of friction.
+    pub(super) fn levels(&self, forces: &[T; N], loads: Option<&Loads<T, N>>) -> [T; N] {
+        from_fn(|k| {
+            let contact = &self.contacts[k];
+            match (contact.slip(), loads) {
+                (Some((gap, _)), _) => contact.coefficients[1] * at(forces, gap),
+                (None, Some(loads)) if contact.is_loaded() => {
+                    contact.levels[1] + contact.coefficients[1] * size(&loads.at_one(k, forces))
+                }
+                (None, _) => contact.levels[1],
+            }
         })
     }
 

@@ -43,7 +43,12 @@ fn sum<T: Real, const N: usize>(slopes: &[[T; 3]; N], factors: &[T; N], start: [
 impl<T: Real, const N: usize> Loads<T, N> {
     /// The reactions under these forces.
     pub(super) fn at(&self, forces: &[T; N]) -> [[T; 3]; N] {
-        from_fn(|k| sum(&self.slope[k], forces, self.bias[k]))
+        from_fn(|k| self.at_one(k, forces))
+    }
+
+    /// That of contact k.
+    pub(super) fn at_one(&self, k: usize, forces: &[T; N]) -> [T; 3] {
+        sum(&self.slope[k], forces, self.bias[k])
     }
 
     /// What the reaction of contact k grows by under further forces.

@@ -28,6 +28,8 @@ const SLOW: f64 = 1e2;
 const SUDDEN: f64 = 1e-6;
 /// What a solution is off by times this may be nothing.
 const UNSURE: f64 = 100.0;
+/// Friction in proportion to reactions is found by so many rounds, before all is solved together.
+const LOADED: usize = 4;
 /// So many contacts change their phase, each some times, until all are consistent.
 const REPAIRS: usize = 8;
 
@@ -244,16 +246,24 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         let bound = |k: usize| match (&self.contacts[k], self.phases[k]) {
             (contact, Phase::Sticks) if contact.slip().is_some() => Bound::Plane(contact.coefficients[1]),
             (_, Phase::Slides) => Bound::Pulled(pulls[k]),
-            _ if self.spent[k] => Bound::Given,
-            (contact, phase) if phase.is_held() => Bound::Between(bounds(contact.levels[1], phase)),
+            (_, phase) if phase.is_held() && !self.spent[k] => Bound::Between(bounds(zero, phase)),
             _ => Bound::Given,
         };
         let contacts = self.contacts;
         let mut cones = Cones { contacts: &contacts, compliance: &local.compliance, bounds: from_fn(bound) };
         let kinetic = self.kinetic_forces();
         let jam = |contact| Jam { contact, gain: 1.0 };
-        let (mut forces, mut error) =
-            cones.solved(&local.bias, kinetic).map_err(|k| self.jammed(t, &jam(k)))?;
+        let (mut forces, mut error) = (kinetic, zero);
+        // Reactions, to which friction is in proportion, follow all forces.
+        for _ in 0..if loads.is_some() { LOADED } else { 1 } {
+            let levels = self.levels(&forces, loads.as_ref());
+            for k in 0..N {
+                if let Bound::Between(range) = &mut cones.bounds[k] {
+                    *range = bounds(levels[k], self.phases[k]);
+                }
+            }
+            (forces, error) = cones.solved(&local.bias, forces).map_err(|k| self.jammed(t, &jam(k)))?;
+        }
         // What does not hold slides, by the kinetic coefficient.
         let slides: [bool; N] = from_fn(|k| {
             let (Bound::Plane(coefficient), Some((gap, _))) = (cones.bounds[k], self.contacts[k].slip())
@@ -286,7 +296,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
                 // What cannot move, as others hold it, goes on pulling as much as it can.
                 (None, Bound::Between(_))
                     if !firm[k]
-                        && self.contacts[k].levels[1] > zero
+                        && self.contacts[k].rubs()
                         && !yields(&local.compliance, k, &firm) =>
                 {
                     self.spent[k] = true;
@@ -340,7 +350,10 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
                     (Phase::AtLower | Phase::AtUpper | Phase::Sticks, _) => self.phases[k] = phase,
                     _ => self.leave(k, phase),
                 },
-                _ => return Ok(()),
+                _ => {
+                    self.stay(&local, &acting, &places, rounding);
+                    return Ok(());
+                }
             }
         }
         if worst <= unmet { Ok(()) } else { Err(self.jammed(t, &jam(0))) }
@@ -363,6 +376,25 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         let own = self.dynamics.rates(model);
         let moves = scratch.as_ref().iter().take(own.end).skip(own.start);
         not_below_rounding::<T>(0.0) * size(moves)
+    }
+
+    /// What is to move and cannot, as others hold it, stays, and its friction pulls on.
+    fn stay(
+        &mut self,
+        local: &Local<T, N>,
+        Acting { forces, .. }: &Acting<T, N>,
+        places: &[[T; 2]; N],
+        least: T,
+    ) {
+        let accelerations = local.accelerations(forces);
+        let held = from_fn(|k| self.phases[k].is_held() && !self.spent[k]);
+        for k in 0..N {
+            let is_to_move = matches!(self.phases[k], Phase::Up | Phase::Down);
+            let is_at_rest = accelerations[k].abs() <= least && self.is_at_rest(k, places[k][1]);
+            if is_to_move && is_at_rest && !yields(&local.compliance, k, &held) {
+                (self.phases[k], self.spent[k], self.split[k]) = (Phase::Sticks, true, forces[k]);
+            }
+        }
     }
 
     /// What friction cannot hold, as a coordinate in the dead centre of a linkage, passes through rest; or stays, where
