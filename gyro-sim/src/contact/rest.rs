@@ -257,9 +257,9 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
         // Reactions, to which friction is in proportion, follow all forces.
         for _ in 0..if loads.is_some() { LOADED } else { 1 } {
             let levels = self.levels(&forces, loads.as_ref());
-            for k in 0..N {
-                if let Bound::Between(range) = &mut cones.bounds[k] {
-                    *range = bounds(levels[k], self.phases[k]);
+            for ((bound, level), phase) in cones.bounds.iter_mut().zip(levels).zip(self.phases) {
+                if let Bound::Between(range) = bound {
+                    *range = bounds(level, phase);
                 }
             }
             (forces, error) = cones.solved(&local.bias, forces).map_err(|k| self.jammed(t, &jam(k)))?;
@@ -295,9 +295,7 @@ impl<D, T: Real, const N: usize> Contacts<D, T, N> {
             match (self.contacts[k].slip(), cones.bounds[k]) {
                 // What cannot move, as others hold it, goes on pulling as much as it can.
                 (None, Bound::Between(_))
-                    if !firm[k]
-                        && self.contacts[k].rubs()
-                        && !yields(&local.compliance, k, &firm) =>
+                    if !firm[k] && self.contacts[k].rubs() && !yields(&local.compliance, k, &firm) =>
                 {
                     self.spent[k] = true;
                 }
