@@ -52,8 +52,9 @@ pub(super) fn pairs<'t>(file: &Table<'t>, contact: &Table<'t>) -> Result<Pairs<'
     };
     let Some([one, other]) = sides(file, contact)? else { return Ok(Pairs::default()) };
     let (mut pairs, mut pass) = (Vec::new(), Vec::new());
+    let is_rigid = contact.contains_key("restitution");
     for (one, other) in one.iter().flat_map(|one| other.iter().map(move |other| (*one, *other))) {
-        match pair(one, other).or_else(|| pair(other, one)) {
+        match pair(one, other, is_rigid).or_else(|| pair(other, one, is_rigid)) {
             Some(pair) => pairs.push(pair),
             None => pass.push([one.kind, other.kind]),
         }
@@ -154,13 +155,26 @@ fn sides<'a, 't>(
     Ok(found.try_into().ok())
 }
 
+/// The points of a rim that may touch a plane: its lowest one, and three, in radii from its centre, on which it lies.
+const RIM: [[&str; 3]; 4] =
+    [["1", "0", "0"], ["0", "0.8", "0"], ["0", "-0.48", "0.64"], ["0", "-0.48", "-0.64"]];
+
 /// How the second touches the first.
-fn pair<'t>(first: Surface<'_, 't>, second: Surface<'_, 't>) -> Option<Table<'t>> {
+fn pair<'t>(first: Surface<'_, 't>, second: Surface<'_, 't>, is_rigid: bool) -> Option<Table<'t>> {
     let half = |surface: &Surface<'_, 't>, k: usize, sign: &str| {
         let size = surface.size(k)?;
         Some(Spanned::new(size.span(), DeValue::String(format!("{sign}({})/2", written(&size)?).into())))
     };
-    let zero = || Spanned::new(first.body.span(), DeValue::String("0".into()));
+    let text = |text: &'static str| Spanned::new(first.body.span(), DeValue::String(text.into()));
+    let zero = || text("0");
+    // Rigid rims have points on which they lie flat, too.
+    let rim = |height: Value<'t>| {
+        let point = |[is_lowest, x, y]: [&'static str; 3]| {
+            array(vec![height.clone(), text(is_lowest), text(x), text(y)])
+        };
+        let n = if is_rigid { RIM.len() } else { 1 };
+        RIM[..n].iter().copied().map(point).collect::<Vec<_>>()
+    };
     let mut pair = Table::new();
     let (kind, features) = match (first.kind, second.kind) {
         ("plane", "sphere") => ("points", vec![array(vec![zero(), zero(), zero()])]),
@@ -182,7 +196,7 @@ fn pair<'t>(first: Surface<'_, 't>, second: Surface<'_, 't>) -> Option<Table<'t>
         }
         ("plane", "torus") => {
             put(&mut pair, "rim", second.size(1)?);
-            ("rims", vec![zero()])
+            ("rims", rim(zero()))
         }
         ("plane", "ellipsoid") => {
             for (k, key) in ["semi_x", "semi_y", "semi_z"].into_iter().enumerate() {
@@ -192,7 +206,7 @@ fn pair<'t>(first: Surface<'_, 't>, second: Surface<'_, 't>) -> Option<Table<'t>
         }
         ("plane", "cylinder") => {
             put(&mut pair, "rim", zero());
-            ("rims", vec![half(&second, 1, "")?, half(&second, 1, "-")?])
+            ("rims", [rim(half(&second, 1, "")?), rim(half(&second, 1, "-")?)].concat())
         }
         ("sphere" | "capsule" | "cylinder" | "box", "sphere") | ("capsule", "capsule") => {
             let halves = ["half_x", "half_y", "half_z"].into_iter().enumerate();
