@@ -98,6 +98,7 @@ mod equations;
 mod error;
 mod guards;
 mod hybrid;
+mod impacts;
 mod integrated;
 mod joint;
 mod loads;
