@@ -69,7 +69,6 @@ fn a_progressive_spring_swings_as_its_equation_does() {
         near(&run(&page, options, "1.3"), expected, 2e-8, &format!("{options:?}"));
     }
     near(&run(&page, &["--method", "rodas4", "--tolerance", "1e-10"], "1.3"), expected, 2e-6, "rodas4");
-    near(&run(&page, &["--engine", "generated", "--tolerance", "1e-11"], "1.3"), expected, 2e-7, "generated");
 }
 
 /// The energy is the square of a curve: it acts by 2 f f'.

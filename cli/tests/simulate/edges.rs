@@ -226,10 +226,6 @@ fn steps_end_at_kinks_and_runs_are_as_exact_as_without() {
         );
         assert!(error < CONTROLLED[0].1 && run["kinks_crossed"].as_u64() == Some(18), "{law}: {error} {run}");
     }
-    let compiled = ["--engine", "generated", "--integrator", "dop853", "--tolerance", "1e-9"];
-    let (error, run) =
-        off(&format!("{ROTOR}{MOTOR}value = {:?}\n", laws[0].1), &compiled, by_halves(5.0, 20.0));
-    assert!(error < CONTROLLED[0].1 && run["kinks_crossed"].as_u64() == Some(18), "{error} {run}");
     let smooth = format!("{ROTOR}{MOTOR}value = \"-2*(turn - 0.1)\"\n");
     for (options, bound) in CONTROLLED {
         let (error, run) = off(&smooth, options, by_halves(2.0, 20.0));

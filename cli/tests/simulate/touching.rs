@@ -230,7 +230,7 @@ fn random(dice: &mut Dice, (one, other): (Form, Form)) -> [Placed; 2] {
 #[test]
 fn gaps_are_distances() {
     let mut dice = Dice(0x9E37_79B9_7F4A_7C15);
-    let all: Vec<[Placed; 2]> = (0..3).flat_map(|_| PAIRS).map(|pair| random(&mut dice, pair)).collect();
+    let all: Vec<[Placed; 2]> = (0..2).flat_map(|_| PAIRS).map(|pair| random(&mut dice, pair)).collect();
     for (part, placed) in all.chunks(PAIRS.len()).enumerate() {
         let mut page = "format = 1\nname = \"gaps\"\n".to_owned();
         for (k, placed) in placed.iter().enumerate() {
@@ -306,7 +306,7 @@ fn a_ball_that_slides_comes_to_roll() {
         )
         .replace("name = \"touches\"\n", "name = \"touches\"\ngravity = [0, 0, -9.81]\n");
         for form in [&FORMS[0], &FORMS[3]] {
-            let run = run("slides", &page, &["--t-end", "1"], form);
+            let run = run("slides", &page, &["--t-end", "0.5"], form);
             let seen: [f64; 18] = told(&run, "rolls_seen");
             near([seen[12], seen[13]], [3.0 * left, left], 1e-8);
             near([seen[15], seen[16]], [-left / r, 3.0 * left / r], 1e-6);
