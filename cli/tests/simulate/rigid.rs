@@ -253,7 +253,7 @@ fn what_is_round_lies_flat() {
 #[test]
 #[ignore = "takes long: `.ci/steps` runs it"]
 fn what_is_thrown_keeps_its_ledger() {
-    for (seed, page) in (400..420).map(|seed| (seed, gyro_pages::scene(seed))) {
+    for (seed, page) in (400..412).map(|seed| (seed, gyro_pages::scene(seed))) {
         let drift = run(&format!("rigid-thrown-{seed}"), &page, &[], &[])["energy_drift"].as_f64().unwrap();
         assert!(drift < 1e-8, "scene {seed}: {drift}");
     }

@@ -148,7 +148,7 @@ fn check(name: &str, model: &Model, functions: &Functions, seed: u64) -> usize {
 fn lengths_of_euler_parameters_mean_nothing() {
     let functions = Functions::all();
     let (mut n_models, mut n_functions) = (0, 0);
-    let n_pages = std::env::var("GYRO_PAGES").map_or(60, |n| n.parse().expect("a number of pages"));
+    let n_pages = std::env::var("GYRO_PAGES").map_or(24, |n| n.parse().expect("a number of pages"));
     for seed in 40_000..40_000 + n_pages {
         let text = gyro_pages::page(seed);
         let model =
