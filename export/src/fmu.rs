@@ -211,8 +211,8 @@ impl<'a> Unit<'a> {
         units.dedup();
         xml.create_element("UnitDefinitions").write_inner_content(|xml| {
             for unit in units {
-                let base = base_units(unit);
                 xml.create_element("Unit").with_attribute(("name", unit)).write_inner_content(|xml| {
+                    let Some(base) = base_units(unit) else { return Ok(()) };
                     let exponents = base.iter().filter(|(_, exponent)| *exponent != 0);
                     let exponents: Vec<(&str, String)> =
                         exponents.map(|(name, exponent)| (*name, exponent.to_string())).collect();

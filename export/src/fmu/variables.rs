@@ -42,7 +42,7 @@ pub(super) fn variables(
     let mut variables = vec![time];
     for ((name, unit), start) in states.iter().zip(starts) {
         variables.push(Variable {
-            unit: Some(unit.clone()),
+            unit: told(unit),
             initial: Some("exact"),
             start: Some(start + 0.0),
             ..Variable::new(name, "output", "continuous")
@@ -50,7 +50,7 @@ pub(super) fn variables(
     }
     for (n, (name, unit)) in states.iter().enumerate() {
         variables.push(Variable {
-            unit: Some(by_time(unit)),
+            unit: told(unit).map(|unit| by_time(&unit)),
             initial: Some("calculated"),
             derivative: Some(n + 1),
             ..Variable::new(&format!("der({name})"), "local", "continuous")
@@ -58,7 +58,7 @@ pub(super) fn variables(
     }
     for (input, unit) in model.inputs.iter().zip(&settings.input_units) {
         variables.push(Variable {
-            unit: Some(unit.clone()),
+            unit: told(unit),
             start: Some(to_f64(&input.value)),
             ..Variable::new(&input.name, "input", "continuous")
         });
@@ -72,7 +72,7 @@ pub(super) fn variables(
     }
     for (name, unit) in &settings.outputs {
         variables.push(Variable {
-            unit: Some(unit.clone()),
+            unit: told(unit),
             initial: Some("calculated"),
             ..Variable::new(name, "output", "continuous")
         });
@@ -177,43 +177,107 @@ fn distinct(variables: &mut [Variable]) {
     }
 }
 
+/// A unit as importers are told: none of what has none, or of which the model file does not say any.
+fn told(unit: &str) -> Option<String> {
+    (!matches!(unit, "" | "1")).then(|| unit.to_owned())
+}
+
 /// The unit of a derivative by time.
 fn by_time(unit: &str) -> String {
     match unit {
-        "1" => "1/s".to_owned(),
         "J" => "W".to_owned(),
         _ => unit.strip_suffix("/s").map_or_else(|| format!("{unit}/s"), |unit| format!("{unit}/s^2")),
     }
 }
 
-/// A unit in powers of the base units of FMI.
-pub(super) fn base_units(unit: &str) -> [(&'static str, i32); 4] {
+/// A unit in powers of the base units of FMI: a product of symbols with exponents (`m/s2`, `kg*m^2`, `N.m.s/rad`), of
+/// which all that comes after a slash divides. Nothing if a symbol is not known, so that no other unit is taken for it.
+pub(super) fn base_units(unit: &str) -> Option<[(&'static str, i32); 4]> {
     // kg, m, s, rad
     let powers = |symbol: &str| match symbol {
-        "kg" => [1, 0, 0, 0],
-        "m" => [0, 1, 0, 0],
-        "s" => [0, 0, 1, 0],
-        "rad" => [0, 0, 0, 1],
-        "N" => [1, 1, -2, 0],
-        "J" => [1, 2, -2, 0],
-        "W" => [1, 2, -3, 0],
-        _ => [0; 4],
+        "" => Some([0; 4]),
+        "kg" => Some([1, 0, 0, 0]),
+        "m" => Some([0, 1, 0, 0]),
+        "s" => Some([0, 0, 1, 0]),
+        "rad" => Some([0, 0, 0, 1]),
+        "N" => Some([1, 1, -2, 0]),
+        "J" => Some([1, 2, -2, 0]),
+        "W" => Some([1, 2, -3, 0]),
+        _ => None,
     };
     let mut sum = [0; 4];
     for (n, quotient) in unit.split('/').enumerate() {
-        for factor in quotient.split('*') {
-            let (symbol, exponent) = factor.split_once('^').unwrap_or((factor, "1"));
-            let exponent: i32 = exponent.parse().unwrap_or(1);
-            for (sum, power) in sum.iter_mut().zip(powers(symbol)) {
+        for factor in quotient.split(['*', '.']) {
+            let end = factor.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(factor.len());
+            let (symbol, exponent) = factor.split_at(end);
+            let exponent: i32 = match exponent.trim_start_matches('^') {
+                "" => 1,
+                written => written.parse().ok()?,
+            };
+            for (sum, power) in sum.iter_mut().zip(powers(symbol)?) {
                 *sum += if n == 0 { power * exponent } else { -power * exponent };
             }
         }
     }
     let [kg, m, s, rad] = sum;
-    [("kg", kg), ("m", m), ("s", s), ("rad", rad)]
+    Some([("kg", kg), ("m", m), ("s", s), ("rad", rad)])
 }
 
 /// A number as XML has it.
 pub(super) fn number(value: f64) -> String {
     format!("{value:?}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gyro_model::keys::FORCE;
+
+    #[test]
+    fn units_have_the_powers_of_what_they_are_made_of() {
+        let table = [
+            ("1", [0, 0, 0, 0]),
+            ("s", [0, 0, 1, 0]),
+            ("1/s", [0, 0, -1, 0]),
+            ("m", [0, 1, 0, 0]),
+            ("m/s", [0, 1, -1, 0]),
+            ("m/s2", [0, 1, -2, 0]),
+            ("m/s^2", [0, 1, -2, 0]),
+            ("rad", [0, 0, 0, 1]),
+            ("rad/s", [0, 0, -1, 1]),
+            ("rad/s2", [0, 0, -2, 1]),
+            ("rad/s^2", [0, 0, -2, 1]),
+            ("kg", [1, 0, 0, 0]),
+            ("kg.m2", [1, 2, 0, 0]),
+            ("kg*m^2", [1, 2, 0, 0]),
+            ("N", [1, 1, -2, 0]),
+            ("N/m", [1, 0, -2, 0]),
+            ("N*s/m", [1, 0, -1, 0]),
+            ("N*m", [1, 2, -2, 0]),
+            ("N.m/rad", [1, 2, -2, -1]),
+            ("N*m*s/rad", [1, 2, -1, -1]),
+            ("N.m.s/rad", [1, 2, -1, -1]),
+            ("J", [1, 2, -2, 0]),
+            ("W", [1, 2, -3, 0]),
+        ];
+        for (unit, powers) in table {
+            assert_eq!(base_units(unit).map(|base| base.map(|(_, power)| power)), Some(powers), "{unit}");
+        }
+        for unit in ["N/m^exponent", "deg"] {
+            assert_eq!(base_units(unit), None, "{unit}");
+        }
+    }
+
+    #[test]
+    fn all_units_of_forces_and_of_what_changes_with_time_are_known() {
+        let keys = FORCE.kinds.iter().flat_map(|kind| kind.keys).filter_map(|key| key.unit());
+        let units: Vec<&str> = keys.flat_map(|unit| unit.split(" or ")).collect();
+        assert!(units.contains(&"N.m.s/rad") && units.contains(&"J"), "{units:?}");
+        for unit in units {
+            let [base, rate] = [unit, &by_time(unit)].map(|unit| base_units(unit).expect(unit));
+            for ((name, power), (_, of_rate)) in base.into_iter().zip(rate) {
+                assert_eq!(of_rate, power - i32::from(name == "s"), "{unit} by time: {name}");
+            }
+        }
+    }
 }
