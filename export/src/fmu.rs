@@ -3,6 +3,7 @@
 //! What an FMU holds but for the archive around it: the model description, the C sources with what they are to be
 //! compiled with, and a page of documentation.
 
+mod dependencies;
 mod variables;
 
 use crate::names::Names;
@@ -227,12 +228,14 @@ impl<'a> Unit<'a> {
         Ok(())
     }
 
-    /// What is computed of what: every output and derivative of all states and inputs.
+    /// What is computed of what.
     fn structure(&self, xml: &mut Xml) -> io::Result<()> {
         let with = |kind: &'static str, is_it: &dyn Fn(&Variable) -> bool, xml: &mut Xml| {
             self.variables.iter().filter(|of| is_it(of)).try_for_each(|of| {
+                let depends: Vec<String> = of.depends.references().map(|known| known.to_string()).collect();
                 xml.create_element(kind)
                     .with_attribute(("valueReference", of.reference.to_string().as_str()))
+                    .with_attribute(("dependencies", depends.join(" ").as_str()))
                     .write_empty()
                     .map(|_| ())
             })

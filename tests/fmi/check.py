@@ -126,6 +126,10 @@ def derivatives(archive, description, folder):
         slopes.append((value(start + at, pressed + also) - value(start - at, pressed - also)) / (2 * h))
         value(start, pressed)
     matrix, slopes = np.array(matrix), np.array(slopes)
+    told = {of.variable.valueReference: of.dependencies for of in description.outputs + description.derivatives}
+    told = np.array([[known in [v.valueReference for v in told[unknown]] for unknown in unknowns] for known in knowns])
+    assert not matrix[~told].any(), "a slope by what an unknown is said not to depend on"
+    assert told.mean() < 0.95, "all is said to depend on all"
     # Differences are as inexact as the largest slope of an unknown makes them.
     worst = (np.abs(matrix - slopes) / np.maximum(1.0, np.abs(matrix).max(axis=0))).max()
     seed = np.cos(np.arange(len(unknowns)))

@@ -1,5 +1,6 @@
 //! The variables of a unit: names, units, starts.
 
+use super::dependencies::{Knowns, References, dependencies};
 use super::{Settings, Xml};
 use crate::Error;
 use gyro_codegen::{JointPlace, Scheduled};
@@ -18,6 +19,8 @@ pub(super) struct Variable {
     pub(super) initial: Option<&'static str>,
     pub(super) start: Option<f64>,
     pub(super) derivative: Option<usize>,
+    /// What it depends on, if it is an unknown.
+    pub(super) depends: Knowns,
 }
 
 /// All variables, in the order of their value references: time, states, derivatives, inputs, parameters, outputs. An
@@ -78,10 +81,29 @@ pub(super) fn variables(
         });
     }
     variables.iter_mut().enumerate().for_each(|(n, variable)| variable.reference = n);
+    depend(&mut variables, model, scheduled);
     let is_state = |of: &Variable| model.states.iter().any(|state| state.name == of.name);
     variables.retain(|of| of.reference <= n_states || !(of.causality == "output" && is_state(of)));
     distinct(&mut variables);
     Ok(variables)
+}
+
+/// Says of each unknown what it depends on.
+fn depend(variables: &mut [Variable], model: &Model, scheduled: &Scheduled) {
+    let n_states = scheduled.len(Space::Joints);
+    let inputs = 1 + 2 * n_states;
+    let parameters = inputs + model.inputs.len();
+    let first_output = parameters + model.parameters.len();
+    let [derivatives, outputs] =
+        dependencies(scheduled, References { time: 0, states: 1, inputs, parameters });
+    for variable in variables {
+        variable.depends = match (variable.derivative, variable.causality) {
+            (Some(of), _) => derivatives[of - 1].clone(),
+            (_, "output") if variable.reference <= n_states => Knowns::one(variable.reference),
+            (_, "output") => outputs[variable.reference - first_output].clone(),
+            _ => continue,
+        };
+    }
 }
 
 impl Variable {
@@ -96,6 +118,7 @@ impl Variable {
             initial: None,
             start: None,
             derivative: None,
+            depends: Knowns::default(),
         }
     }
 

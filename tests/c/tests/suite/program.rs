@@ -13,10 +13,15 @@ pub(crate) const FLAGS: [&str; 8] =
 
 /// A model file and its module, with the functions that are asked for here, or there, or that solvers call.
 pub(crate) fn model_and_module(page: &str, functions: Option<&[&str]>) -> (Model, Module) {
+    let text = fs::read_to_string(Path::new("../..").join(page)).expect("a model file");
+    of_text((page, &text), functions)
+}
+
+/// The same of a text that stands where a model file would.
+pub(crate) fn of_text((page, text): (&str, &str), functions: Option<&[&str]>) -> (Model, Module) {
     let path = Path::new("../..").join(page);
-    let text = fs::read_to_string(&path).expect("a model file");
     let mut load = |table: &str| fs::read_to_string(path.with_file_name(table)).map_err(|e| e.to_string());
-    let model = gyro_model::read_with(page, &text, &mut load).expect("no mistakes");
+    let model = gyro_model::read_with(page, text, &mut load).expect("no mistakes");
     let named = |names: Vec<&str>| Functions::named(names).expect("known");
     let functions = match (functions, &model.functions) {
         (Some(names), _) => named(names.to_vec()),

@@ -1,7 +1,7 @@
 //! Units of FMI: their description, and that they give the bits of the functions and of the solver that they hold.
 //! What importers that others wrote make of them: `.ci/fmu`.
 
-use crate::program::{compiled, model_and_module, own};
+use crate::program::{compiled, of_text, own};
 use gyro_export::fmu::{Fmu, Settings, fmu};
 use roxmltree::{Document, Node};
 use std::fs;
@@ -11,12 +11,16 @@ use std::process::Command;
 const TOKEN: &str = "{a token}";
 
 fn unit(page: &str) -> Fmu {
+    unit_of((page, &fs::read_to_string(Path::new("../..").join(page)).expect("a model file")))
+}
+
+fn unit_of(page: (&str, &str)) -> Fmu {
     let mut functions = vec!["solvers"];
-    let (model, _) = model_and_module(page, None);
+    let (model, _) = of_text(page, None);
     if !model.outputs.is_empty() {
         functions.extend(["joint_outputs", "output_derivatives"]);
     }
-    let (model, module) = model_and_module(page, Some(&functions));
+    let (model, module) = of_text(page, Some(&functions));
     let n_outputs: usize = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
     let settings = Settings {
         token: TOKEN.to_owned(),
@@ -115,4 +119,64 @@ fn with_inputs_and_outputs() {
 #[test]
 fn without_degrees_of_freedom() {
     check("tests/models/cam.toml");
+}
+
+/// Two carts on a rail: a motor pushes one, a spring holds the other.
+const CARTS: &str = r#"
+format = 1
+name = "carts"
+inputs = { push = 0 }
+parameters = { stiffness = 5 }
+body = [
+    { name = "rail", fixed = true },
+    { name = "one", mass = 2, inertia = [1, 1, 1] },
+    { name = "other", mass = 2, inertia = [1, 1, 1] },
+]
+joint = [
+    { name = "pushed", kind = "prismatic", axis = [1, 0, 0], zero = [0, 1, 0], first = { body = "rail" }, second = { body = "one" } },
+    { name = "held", kind = "prismatic", axis = [1, 0, 0], zero = [0, 1, 0], first = { body = "rail" }, second = { body = "other" } },
+]
+force = [
+    { name = "motor", kind = "motor", joint = "pushed", value = "push" },
+    { name = "spring", kind = "spring", joint = "held", stiffness = "stiffness" },
+]
+output = [
+    { name = "sensor", kind = "acceleration", body = "one" },
+    { name = "place", kind = "pose", body = "other" },
+]
+"#;
+
+#[test]
+fn what_depends_on_what_is_told() {
+    let unit = unit_of(("carts.toml", CARTS));
+    let document = Document::parse(&unit.files[0].1).expect("XML");
+    let variables: Vec<&str> = document
+        .descendants()
+        .filter(|node| node.has_tag_name("Float64"))
+        .map(|node| attribute(node, "name"))
+        .collect();
+    let name = |reference: &str| variables[reference.parse::<usize>().expect("a number")];
+    let depends = |kind: &str, unknown: &str| -> Vec<&str> {
+        let is_it = |node: &Node<'_, '_>| {
+            node.has_tag_name(kind) && name(attribute(*node, "valueReference")) == unknown
+        };
+        let found = document.descendants().find(is_it).unwrap_or_else(|| panic!("no {kind} {unknown}"));
+        attribute(found, "dependencies").split_whitespace().map(name).collect()
+    };
+    // Of the outputs the first six are accelerations, then come a place and an orientation.
+    let expected: [(&str, &str, &[&str]); 10] = [
+        ("Output", "pushed", &["pushed"]),
+        ("Output", "held rate", &["held rate"]),
+        ("ContinuousStateDerivative", "der(pushed)", &["pushed rate"]),
+        ("ContinuousStateDerivative", "der(pushed rate)", &["push"]),
+        ("ContinuousStateDerivative", "der(held rate)", &["held", "stiffness"]),
+        ("InitialUnknown", "der(held rate)", &["held", "stiffness"]),
+        ("Output", "output 0", &["push"]),
+        ("Output", "output 1", &[]),
+        ("Output", "output 6", &["held"]),
+        ("InitialUnknown", "output 7", &[]),
+    ];
+    for (kind, unknown, knowns) in expected {
+        assert_eq!(depends(kind, unknown), knowns, "{kind} {unknown}");
+    }
 }
