@@ -1,6 +1,7 @@
 //! Exported C: the bits of Rust, and calls that nobody should make.
 
 mod bits;
+mod compilers;
 mod docs;
 mod functions;
 mod hostile;
