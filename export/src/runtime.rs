@@ -67,10 +67,11 @@ pub(crate) fn elementary(text: &str) -> String {
     }
     let parts = ELEMENTARY.iter().filter(|part| wanted.contains(&part.name));
     let texts: Vec<&str> = parts.map(|part| part.text).collect();
-    // What warns of sizes of whole numbers, which these functions were not written for.
+    // What warns of conversions, which these functions were not written for.
+    let ignored = ["conversion", "sign-conversion", "float-conversion", "double-promotion"];
+    let ignored = ignored.map(|of| format!("#pragma GCC diagnostic ignored \"-W{of}\"\n")).concat();
     format!(
-        "\n{}\n#if defined(__GNUC__)\n#pragma GCC diagnostic push\n#pragma GCC diagnostic ignored \"-Wconversion\"\n\
-         #pragma GCC diagnostic ignored \"-Wsign-conversion\"\n#endif\n\n{}\n#if defined(__GNUC__)\n\
+        "\n{}\n#if defined(__GNUC__)\n#pragma GCC diagnostic push\n{ignored}#endif\n\n{}\n#if defined(__GNUC__)\n\
          #pragma GCC diagnostic pop\n#endif\n",
         include_str!("../c/libm/words.c"),
         texts.join("\n")

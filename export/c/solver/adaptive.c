@@ -4,7 +4,7 @@
 static gyro_status gyro_check_control(gyro_solver *s)
 {
     const gyro_control *c = &s->control;
-    const double smallest = 4.0 * EPSILON;
+    const double smallest = 4.0 * (double)EPSILON;
     if (!(c->relative >= smallest && c->absolute > 0.0 && isfinite(c->relative) && isfinite(c->absolute)))
         return gyro_fail(s, GYRO_INVALID_TOLERANCE, s->t, smallest, 0.0, 0, NULL);
     if (!(c->first_step >= 0.0 && isfinite(c->first_step)))
@@ -107,7 +107,7 @@ static void gyro_grow(gyro_solver *s, gyro_real h, double error, int has_failed,
 
 static double gyro_shortest(const gyro_solver *s)
 {
-    return fmax(fmax(16.0 * EPSILON * fabs((double)s->t), s->control.smallest_step), DBL_MIN);
+    return fmax(fmax(16.0 * (double)EPSILON * fabs((double)s->t), s->control.smallest_step), DBL_MIN);
 }
 
 /* Takes the end of the attempt as the trial, corrects it and keeps it. */

@@ -157,7 +157,7 @@ static void gyro_go_on(gyro_solver *s, const gyro_real after[2], gyro_real h, in
 
 static void gyro_note(gyro_solver *s, double h)
 {
-    const double slope = s->rate[0], state = s->rate[1], rounding = 100.0 * EPSILON;
+    const double slope = s->rate[0], state = s->rate[1], rounding = 100.0 * (double)EPSILON;
     double size = 0.0, rate;
     for (int i = 0; i < GYRO_SOLVER_N; i++)
         size = size + (double)s->y[i] * (double)s->y[i];

@@ -1,6 +1,6 @@
-//! What compilers make of exported C.
+//! What compilers make of exported C: options that they are given, warnings that users ask for.
 
-use crate::program::of_text;
+use crate::program::{FLAGS, of_text};
 use gyro_export::{Exported, Precision};
 use std::path::PathBuf;
 use std::process::Command;
@@ -72,5 +72,15 @@ fn only_excess_precision_of_double_and_float_is_refused() {
             // clang does not let itself be told.
             None => assert!(is_exact || env::var_os("CC").is_some(), "{method}"),
         }
+    }
+}
+
+#[test]
+fn floats_become_doubles_nowhere_without_being_told() {
+    let warnings = ["-Wconversion", "-Wfloat-conversion", "-Wdouble-promotion"];
+    for precision in [Precision::F32, Precision::F64] {
+        let folder = written("swing", &exported(precision), &format!("{precision:?}"));
+        let words = refused(C, &folder, &[&FLAGS[..], &warnings, &["swing.c"]].concat());
+        assert_eq!(words, None, "{precision:?}");
     }
 }
