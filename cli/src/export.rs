@@ -46,16 +46,16 @@ fn c(args: &CArgs) -> Result<(), Failure> {
     let (page, precision) = (files::shown(&args.model), numbers(args.precision));
     let exported = gyro_export::c(&page, &model, &module.scheduled, precision);
     prove(&args.model, (&model, &module), &exported)?;
-    let place = |name: String| args.out.join(name);
-    let header = place(format!("{}.h", module.name));
-    let source = place(format!("{}.c", module.name));
-    let library = place(format!("lib{}.a", module.name));
+    let (place, name) = (|name: String| args.out.join(name), gyro_export::c_name(&module.name));
+    let header = place(format!("{name}.h"));
+    let source = place(format!("{name}.c"));
+    let library = place(format!("lib{name}.a"));
     for path in [&header, &source] {
         write::check(path, Known::Mark(gyro_export::MARK))?;
     }
     let compiled = if args.library {
         write::check(&library, Known::Mark(LIBRARY_MARK))?;
-        Some(compiled(&module.name, &exported)?)
+        Some(compiled(&name, &exported)?)
     } else {
         None
     };
@@ -64,7 +64,7 @@ fn c(args: &CArgs) -> Result<(), Failure> {
         say(&format!("{} {}", if is_new { "wrote" } else { "fresh already:" }, path.display()));
     }
     if let Some(bytes) = compiled {
-        let beside = args.out.join(format!(".lib{}.a.{}", module.name, process::id()));
+        let beside = args.out.join(format!(".lib{name}.a.{}", process::id()));
         fs::write(&beside, bytes)
             .and_then(|()| fs::rename(&beside, &library))
             .map_err(|e| Failure::Run(format!("{}: {e}", library.display())))?;

@@ -7,6 +7,7 @@ mod dependencies;
 mod variables;
 
 use crate::names::Names;
+use crate::reserved::c_name;
 use crate::text::Writer as Text;
 use crate::{Error, Precision};
 use gyro_codegen::Scheduled;
@@ -51,7 +52,7 @@ const SOURCES: &str = "sources";
 pub const OPTIONS: &[&str] = &["-std=c99", "-O2", "-ffp-contract=off"];
 
 /// The interface, part for part.
-const WRAPPER: [&str; 7] = [
+pub(crate) const WRAPPER: [&str; 7] = [
     include_str!("../c/fmi/instances.c"),
     include_str!("../c/fmi/variables.c"),
     include_str!("../c/fmi/whole_state.c"),
@@ -78,7 +79,7 @@ pub fn fmu(model: &Model, scheduled: &Scheduled, settings: &Settings) -> Result<
     }
     let c = text.written();
     let unit = Unit::of(model, scheduled, settings)?;
-    let name = &model.name;
+    let name = &text.names.prefix;
     let source = |file: &str| format!("{SOURCES}/{file}");
     let sources = vec![source("fmi3.c"), source(&format!("{name}.c"))];
     let wrapper = unit.wrapper(&text.names);
@@ -91,7 +92,7 @@ pub fn fmu(model: &Model, scheduled: &Scheduled, settings: &Settings) -> Result<
         ("documentation/index.html".to_owned(), unit.documentation()),
     ];
     files.extend(HEADERS.map(|(file, text)| (source(file), text.to_owned())));
-    Ok(Fmu { identifier: name.clone(), files, sources })
+    Ok(Fmu { identifier: name.to_string(), files, sources })
 }
 
 struct Unit<'a> {
@@ -136,7 +137,7 @@ impl<'a> Unit<'a> {
     fn wrapper(&self, names: &Names<'_>) -> String {
         let flag = u8::from;
         let mut text = format!("/* {} as a unit of FMI 3.0: around its functions. */\n\n", self.model.name);
-        let _ = write!(text, "#include \"{}.h\"\n#include \"fmi3Functions.h\"\n\n", self.model.name);
+        let _ = write!(text, "#include \"{}.h\"\n#include \"fmi3Functions.h\"\n\n", names.prefix);
         let lines = [
             ("TOKEN", format!("\"{}\"", self.settings.token)),
             ("METHOD", names.upper(self.settings.method)),
@@ -167,8 +168,9 @@ impl<'a> Unit<'a> {
                 ("variableNamingConvention", "flat"),
             ])
             .write_inner_content(|xml| {
+                let identifier = c_name(name);
                 let common = [
-                    ("modelIdentifier", name),
+                    ("modelIdentifier", identifier.as_ref()),
                     ("canGetAndSetFMUState", "true"),
                     ("canSerializeFMUState", "true"),
                     ("providesDirectionalDerivatives", flag(self.has_slopes)),
@@ -249,29 +251,29 @@ impl<'a> Unit<'a> {
     }
 
     fn build(&self, xml: &mut Xml) -> io::Result<()> {
-        let name = self.model.name.as_str();
+        let name = &c_name(&self.model.name);
         xml.create_element("fmiBuildDescription").with_attribute(("fmiVersion", "3.0")).write_inner_content(
             |xml| {
                 xml.create_element("BuildConfiguration")
-                    .with_attribute(("modelIdentifier", name))
+                    .with_attribute(("modelIdentifier", name.as_ref()))
                     .write_inner_content(|xml| {
-                        xml.create_element("SourceFileSet")
-                            .with_attributes([
-                                ("language", "C99"),
-                                ("compiler", "gcc"),
-                                ("compilerOptions", OPTIONS.join(" ").as_str()),
-                            ])
-                            .write_inner_content(|xml| {
-                                for file in ["fmi3.c".to_owned(), format!("{name}.c")] {
-                                    xml.create_element("SourceFile")
-                                        .with_attribute(("name", file.as_str()))
-                                        .write_empty()?;
-                                }
-                                Ok(())
-                            })?;
-                        xml.create_element("Library").with_attribute(("name", "m")).write_empty()?;
-                        Ok(())
-                    })?;
+                    xml.create_element("SourceFileSet")
+                        .with_attributes([
+                            ("language", "C99"),
+                            ("compiler", "gcc"),
+                            ("compilerOptions", OPTIONS.join(" ").as_str()),
+                        ])
+                        .write_inner_content(|xml| {
+                            for file in ["fmi3.c".to_owned(), format!("{name}.c")] {
+                                xml.create_element("SourceFile")
+                                    .with_attribute(("name", file.as_str()))
+                                    .write_empty()?;
+                            }
+                            Ok(())
+                        })?;
+                    xml.create_element("Library").with_attribute(("name", "m")).write_empty()?;
+                    Ok(())
+                })?;
                 Ok(())
             },
         )?;

@@ -1,14 +1,16 @@
 //! How things of a mechanism are called in C.
 
 use crate::Precision;
+use crate::reserved::c_name;
 use gyro_codegen::{Argument, Index, Scheduled, Variable};
 use gyro_model::Model;
+use std::borrow::Cow;
 
 /// Names of one exported mechanism.
 #[derive(Debug)]
 pub(crate) struct Names<'a> {
-    /// The model's name, which begins the name of everything that can be seen from elsewhere.
-    pub(crate) prefix: &'a str,
+    /// The model's name in C, which begins the name of everything that can be seen from elsewhere.
+    pub(crate) prefix: Cow<'a, str>,
     pub(crate) precision: Precision,
     indices: &'a [Index],
     /// Of the indices, in their order.
@@ -27,7 +29,7 @@ impl<'a> Names<'a> {
         let bodies = model.coordinate_bodies().into_iter().map(|body| model.bodies[body].name.as_str());
         let counts = &scheduled.counts;
         let mut names = Self {
-            prefix: &model.name,
+            prefix: c_name(&model.name),
             precision,
             indices: &scheduled.indices,
             constants: Vec::new(),
@@ -113,7 +115,7 @@ impl<'a> Names<'a> {
         // The type itself has no further word.
         let text = template.replace("const gyro *", "const \u{1} *");
         let text = text.replace("GYRO_", &self.upper("")).replace("gyro_", &self.own(""));
-        text.replace('\u{1}', self.prefix)
+        text.replace('\u{1}', &self.prefix)
     }
 }
 

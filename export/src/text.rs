@@ -166,7 +166,7 @@ impl<'a> Writer<'a> {
 
     /// The mechanism's type and what sets it.
     fn definition(&self) -> String {
-        let (real, name) = (self.names.own("real"), self.names.prefix);
+        let (real, name) = (self.names.own("real"), &self.names.prefix);
         let fields = [
             ("parameters", self.model.parameters.len(), "changed by the setter alone"),
             ("derived", self.scheduled.n_results(Kernel::ParameterSetup), "what depends on parameters alone"),
@@ -281,14 +281,14 @@ impl<'a> Writer<'a> {
         format!(
             "{}\n#include \"{}.h\"\n\n#include <float.h>\n#include <math.h>\n#include <string.h>\n\n{}{constant}{elementary}{kernels}{solver}",
             self.head(),
-            self.model.name,
+            self.names.prefix,
             CHECKS
         )
     }
 
     /// Parameters and inputs.
     fn set_up(&self) -> String {
-        let name = self.names.prefix;
+        let name = &self.names.prefix;
         let real = self.names.own("real");
         let default =
             |parameter: &Parameter| self.names.precision.constant(gyro_model::to_f64(&parameter.value));

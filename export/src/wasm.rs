@@ -74,7 +74,7 @@ pub fn wasm(file_name: &str, model: &Model, scheduled: &Scheduled, precision: Pr
     let writer = Writer::new(file_name, model, scheduled, precision);
     let (c, names, has_solver) = (writer.written(), &writer.names, writer.has_solver());
     let about = about(model, &writer).to_string();
-    let name = &model.name;
+    let name = &names.prefix;
     let mut around = include_str!("../c/wasm/around.c").to_owned();
     if has_solver {
         around += include_str!("../c/wasm/solver.c");
@@ -97,9 +97,10 @@ pub fn wasm(file_name: &str, model: &Model, scheduled: &Scheduled, precision: Pr
         exports: exported.map(|function| names.own(function)).collect(),
         script: format!(
             "{head}{}\nexport const about = {about};\n\n/** The mechanism, from the module beside this file unless another \
-             source is given. */\nexport function load(source = new URL('{name}.wasm', import.meta.url)) {{\n  return \
+             source is given. */\nexport function load(source = new URL('{file}.wasm', import.meta.url)) {{\n  return \
              Mechanism.of(about, source);\n}}\n",
-            include_str!("../wasm/runtime.mjs")
+            include_str!("../wasm/runtime.mjs"),
+            file = model.name,
         ),
         declarations: head + &declarations(model, &writer),
         about,
@@ -133,7 +134,7 @@ fn about(model: &Model, writer: &Writer<'_>) -> Value {
     let states =
         states(model, scheduled).into_iter().map(|(name, unit)| json!({ "name": name, "unit": unit }));
     json!({
-        "name": model.name,
+        "name": writer.names.prefix,
         "real": match writer.names.precision { Precision::F64 => "f64", Precision::F32 => "f32" },
         "hasSolver": writer.has_solver(),
         "sizes": {

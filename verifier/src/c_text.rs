@@ -30,17 +30,19 @@ pub fn same_in_c(
     (header, source): (&str, &str),
 ) -> Result<usize, Refusal> {
     let module = Module::read(model, module, constants)?;
-    let named = named_numbers(&tokens(header)?);
+    let header = tokens(header)?;
+    let named = named_numbers(&header);
+    let prefix = prefix(&header).ok_or_else(|| Refusal::new(1, "the header names no type of numbers"))?;
     let source = tokens(source)?;
     for (name, program) in &module.written {
         let is_of_charts = ["newton_step", "solve_velocities"].contains(&name.as_str());
-        let c_name = format!("{}_{name}{}", model.name, if is_of_charts { "_on" } else { "" });
+        let c_name = format!("{prefix}_{name}{}", if is_of_charts { "_on" } else { "" });
         let place = definition(&source, &c_name)
             .ok_or_else(|| Refusal::new(1, format!("the C source has no function `{c_name}`")))?;
         let mut nodes = Nodes::default();
         let expected = nodes.of_program(program, &module);
         let line = source[place].line;
-        let stored = Reader::new(&mut nodes, &named, &model.name).function(&source[place..])?;
+        let stored = Reader::new(&mut nodes, &named, prefix).function(&source[place..])?;
         compare(&c_name, line, (program, &expected), &stored)?;
     }
     Ok(module.written.len())
@@ -113,6 +115,12 @@ fn definition(tokens: &[Token], name: &str) -> Option<usize> {
         let body = tokens[at..].iter().position(|token| token.text == ")").map(|end| at + end + 1);
         is_head && is_declared && body.is_some_and(|body| tokens.get(body).is_some_and(|t| t.text == "{"))
     })
+}
+
+/// What names begin with: `typedef double NAME_real` is the header's first type.
+fn prefix(tokens: &[Token]) -> Option<&str> {
+    let real = tokens.windows(3).find(|words| words[0].text == "typedef")?;
+    real[2].text.strip_suffix("_real")
 }
 
 /// `NAME = 3` in the header: the places of parameters and inputs.

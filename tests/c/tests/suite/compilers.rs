@@ -1,7 +1,8 @@
-//! What compilers make of exported C: options that they are given, warnings that users ask for.
+//! What compilers make of exported C: options that they are given, warnings that users ask for, names that mean
+//! something else to them.
 
-use crate::program::{FLAGS, of_text};
-use gyro_export::{Exported, Precision};
+use crate::program::{FLAGS, of_text, own};
+use gyro_export::{Exported, Precision, c_name};
 use std::path::PathBuf;
 use std::process::Command;
 use std::{env, fs};
@@ -37,6 +38,7 @@ fn exported(precision: Precision) -> Exported {
 fn written(name: &str, exported: &Exported, what: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}_{what}"));
     fs::create_dir_all(&folder).expect("a folder");
+    let name = c_name(name);
     for (ending, text) in [("h", &exported.header), ("c", &exported.source)] {
         fs::write(folder.join(format!("{name}.{ending}")), text).expect("a file");
     }
@@ -84,3 +86,29 @@ fn floats_become_doubles_nowhere_without_being_told() {
         assert_eq!(words, None, "{precision:?}");
     }
 }
+
+/// Words of C, C++ and JavaScript, macros, functions of a C library, and names of the run time.
+#[test]
+fn every_word_may_be_a_name() {
+    let main = "#include <errno.h>\n#include <math.h>\n#include <stdio.h>\n#include <stdlib.h>\n#include <string.h>\n\
+        #include <time.h>\n#include \"gyro.h\"\n\nint main(void)\n{\n    gyro m;\n    gyro_init(&m);\n    \
+        return errno + GYRO_N_JOINTS;\n}\n";
+    let (mut model, module) = of_text(("page.toml", PAGE), None);
+    for name in NAMES {
+        name.clone_into(&mut model.name);
+        let folder =
+            written(name, &gyro_export::c("page.toml", &model, &module.scheduled, Precision::F64), "name");
+        let name = c_name(name);
+        let main = own(&name, main);
+        fs::write(folder.join("main.c"), &main).expect("a file");
+        fs::write(folder.join("main.cpp"), &main).expect("a file");
+        let source = format!("{name}.c");
+        for standard in ["-std=c99", "-std=gnu17"] {
+            assert_eq!(refused(C, &folder, &[standard, "main.c", &source]), None, "{name}");
+        }
+        assert_eq!(refused(("CXX", "c++"), &folder, &["-std=c++20", "main.cpp"]), None, "{name}");
+    }
+}
+
+const NAMES: [&str; 12] =
+    ["int", "double", "bool", "class", "new", "function", "nan", "main", "errno", "link", "index", "s"];
