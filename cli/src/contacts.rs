@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::remarks;
-use crate::words::{count, number};
+use crate::words::number;
 use gyro_model::{Contact, Model, RedundantRow, RowOwner, Touching, to_f64};
 use gyro_runner::{Stop, Surfaces, Touch};
 use std::fmt::Write as _;
@@ -55,16 +55,6 @@ fn in_order([kinetic, at_rest]: [f64; 2]) -> [f64; 2] {
 pub(crate) fn acting(model: &Model, input: usize) -> Option<&str> {
     let of = |contact: &Touch| contact.inputs().contains(&input);
     contacts(model).iter().position(of).map(|contact| name(model, contact))
-}
-
-/// Says that what is made of a model has none of its contacts.
-pub(crate) fn say_left_out(model: &Model, what: &str) {
-    if model.has_rigid_contacts() {
-        remarks::warn(&format!(
-            "{what} leaves out {} of the model file: the forces are inputs, the caller's to set",
-            count(contacts(model).len() as u64, "contact")
-        ));
-    }
 }
 
 /// Refuses a model with contacts.

@@ -1,8 +1,7 @@
 //! Controllers of a model as a run has them.
 
 use crate::formulas::{number_in_runs, seen};
-use crate::remarks;
-use crate::words::{count, number};
+use crate::words::number;
 use gyro_model::{Law, Model, Number, to_f64};
 use gyro_runner::{Controller, Wiring};
 
@@ -36,16 +35,6 @@ pub(crate) fn controllers(model: &Model) -> Vec<Controller> {
 /// The controller that sets an input.
 pub(crate) fn setting(model: &Model, input: usize) -> Option<&gyro_model::Controller> {
     model.controllers.iter().find(|controller| controller.inputs.contains(&input))
-}
-
-/// Says that what is made of a model has none of its controllers.
-pub(crate) fn say_left_out(model: &Model, what: &str) {
-    if !model.controllers.is_empty() {
-        remarks::warn(&format!(
-            "{what} leaves out {} of the model file: its inputs are the caller's to set",
-            count(model.controllers.len() as u64, "controller")
-        ));
-    }
 }
 
 /// A line for each.

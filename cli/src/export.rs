@@ -6,11 +6,10 @@ mod fmu;
 pub(crate) mod wasm;
 
 use crate::args::{CArgs, ExportArgs, Precision, Target};
-use crate::contacts;
-use crate::controllers;
 use crate::failure::Failure;
 use crate::files;
 use crate::generate::{Asked, modules};
+use crate::left_out;
 use crate::paths;
 use crate::progress::Spinner;
 use crate::scene;
@@ -40,8 +39,7 @@ const LIBRARY_MARK: &str = "!<arch>\n";
 fn c(args: &CArgs) -> Result<(), Failure> {
     let module = module(&args.model, args.functions.as_deref(), args.strict)?;
     let model = scene::read(&args.model)?;
-    controllers::say_left_out(&model, "the exported code");
-    contacts::say_left_out(&model, "the exported code");
+    left_out::tell(&model, "the exported code");
     paths::refuse(&model, "exported code")?;
     let (page, precision) = (files::shown(&args.model), numbers(args.precision));
     let exported = gyro_export::c(&page, &model, &module.scheduled, precision);

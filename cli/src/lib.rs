@@ -34,6 +34,7 @@ mod invocation;
 mod json;
 mod kinks;
 mod lapse;
+mod left_out;
 #[cfg(feature = "jit")]
 pub mod library;
 mod linear;

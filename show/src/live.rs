@@ -21,6 +21,8 @@ pub struct Live {
     pub inputs: Vec<Setting>,
     /// How parameters change what is drawn.
     pub slopes: Vec<Slope>,
+    /// What the first run has and the page computes without: it says so.
+    pub without: Vec<String>,
 }
 
 /// Something that can be set.

@@ -3,11 +3,10 @@
 use super::{Scratch, run, say};
 use crate::args::FmuArgs;
 use crate::columns;
-use crate::contacts;
-use crate::controllers;
 use crate::failure::Failure;
 use crate::folder;
 use crate::generate::{Asked, modules};
+use crate::left_out;
 use crate::paths;
 use crate::progress::Spinner;
 use crate::scene;
@@ -27,8 +26,7 @@ pub(super) fn fmu(args: &FmuArgs) -> Result<(), Failure> {
     let model = scene::read(&args.model)?;
     let out = &folder::file(&args.out, &format!("{}.fmu", model.name));
     write::check(out, Known::Record)?;
-    controllers::say_left_out(&model, "the exported unit");
-    contacts::say_left_out(&model, "the exported unit");
+    left_out::tell(&model, "the exported unit");
     paths::refuse(&model, "an exported unit")?;
     let mut functions = vec!["solvers".to_owned()];
     if !model.outputs.is_empty() {

@@ -2,10 +2,9 @@
 
 use super::{Scratch, module, numbers, prove, say};
 use crate::args::WasmArgs;
-use crate::contacts;
-use crate::controllers;
 use crate::failure::Failure;
 use crate::files;
+use crate::left_out;
 use crate::paths;
 use crate::progress::Spinner;
 use crate::scene;
@@ -20,8 +19,7 @@ use std::{env, fs, io};
 pub(super) fn wasm(args: &WasmArgs) -> Result<(), Failure> {
     let module = module(&args.model, args.functions.as_deref(), args.strict)?;
     let model = scene::read(&args.model)?;
-    controllers::say_left_out(&model, "the exported code");
-    contacts::say_left_out(&model, "the exported code");
+    left_out::tell(&model, "the exported code");
     paths::refuse(&model, "exported code")?;
     let page = files::shown(&args.model);
     let exported = written(&page, &model, &module.scheduled, numbers(args.precision));

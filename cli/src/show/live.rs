@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::progress;
 use crate::scene::Scene;
 use crate::verify::proved;
-use crate::{columns, contacts, controllers, paths, remarks};
+use crate::{columns, left_out, paths, remarks};
 use gyro_export::Precision;
 use gyro_model::{Model, parse_decimal, to_f64};
 use gyro_runner::{Integrator, Sample, any_varies};
@@ -30,13 +30,11 @@ pub(super) fn live(scene: &Scene) -> Result<Live, Failure> {
     let texts = (module.code.as_str(), module.constants.as_str());
     gyro_verifier::same_in_c(&model, texts, (&exported.c.header, &exported.c.source))
         .map_err(|e| broken(format!("the C text is not what was proved: {e}")))?;
+    let mut without = left_out::left_out(&scene.model);
     if any_varies(&scene.start.inputs) {
-        remarks::warn(
-            "--live: the run in the page holds inputs at their first values until they are set there",
-        );
+        without.push("how inputs vary: they stay at their first values until they are set there".to_owned());
     }
-    controllers::say_left_out(&scene.model, "--live");
-    contacts::say_left_out(&scene.model, "--live");
+    without.iter().for_each(|words| remarks::warn(&format!("--live: the page computes without {words}")));
     paths::refuse(&scene.model, "--live")?;
     Ok(Live {
         about: serde_json::from_str(&exported.about).map_err(|e| broken(e.to_string()))?,
@@ -49,6 +47,7 @@ pub(super) fn live(scene: &Scene) -> Result<Live, Failure> {
         parameters: settings(&scene.model.parameters, |_| ""),
         inputs: inputs(scene),
         slopes: slopes(scene),
+        without,
     })
 }
 

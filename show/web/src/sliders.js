@@ -28,7 +28,7 @@ function row(kind, { name, value, unit }, changed) {
 }
 
 export function sliders(place, live, clock, redraw) {
-  const { parameters, inputs } = live.given;
+  const { parameters, inputs, without } = live.given;
   const say = element('p', { role: 'status' });
   const changed = (kind, name, value) => {
     live.set(kind, name, value);
@@ -38,7 +38,10 @@ export function sliders(place, live, clock, redraw) {
   const rows = [['parameter', parameters], ['input', inputs]].flatMap(([kind, all]) => all.map((of) => row(kind, of, changed)));
   const button = (words, title, work) => element('button', { type: 'button', title, onclick: work }, words);
   const anew = () => { live.begin(0); clock.seek(0); };
+  // The run that is shown is no longer the one that the page came with.
+  const note = (words) => element('div', { role: 'note' }, `Computed here without ${words}`);
   place.live.append(
+    ...without.map(note),
     ...rows.map(({ line }) => line),
     element('div', {},
       button('anew', 'From the start, with the values that are set', anew),

@@ -115,7 +115,13 @@ await withChromium(async (browser) => {
   await ready(stiff);
   const { method, failure } = await stiff.evaluate(() => ({ ...globalThis.gyroPage.live, failure: String(globalThis.gyroPage.live.failure) }));
   assert.deepEqual([method, failure], ['rodas4', 'null']);
-  for (const each of [page, cart, stiff]) {
+
+  console.log('what the page computes without is said in it');
+  const thrown = await open(browser, join(folder, 'live-thrown.html'));
+  await ready(thrown);
+  assert.ok(await thrown.getByRole('note').isVisible());
+  assert.match(await thrown.getByRole('note').textContent(), /without event `apex`/);
+  for (const each of [page, cart, stiff, thrown]) {
     assert.deepEqual(each.errors, []);
     await each.close();
   }

@@ -7,6 +7,7 @@ import { LIVE, MODELS, ROOT, STIFF, nameOf } from './models.mjs';
 const OTHERS = [
   ['examples/pendulum.toml', ['--t-end', '1', '--compare', 'length=0.4', '--reactions'], 'compared'],
   ...[...LIVE, STIFF].map(([file, more]) => [file, [...more, '--live'], `live-${nameOf(file)}`]),
+  ['show/web/tests/thrown.toml', ['--tolerance', '1e-9', '--live'], 'live-thrown'],
   ['show/web/tests/wedge.toml', [], 'wedge'],
   ['examples/laws/quadrotor.toml', ['--t-end', '1'], 'quadrotor'],
   ['examples/laws/crane.toml', [], 'crane'],

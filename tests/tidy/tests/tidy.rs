@@ -55,7 +55,7 @@ const STAGES: [(&str, &str); 5] = [
     ),
     (
         "cli",
-        "failure words side_by_side remarks args progress choice contacts formulas controllers events kinks write files paths inputs scene lapse rolling runs \
+        "failure words side_by_side remarks args progress choice contacts formulas controllers events kinks write files paths inputs scene lapse left_out rolling runs \
          invocation places rounding chain stability verify interrupt programs machine_code runtime nested batches \
          cache columns eigenvalues equilibrium verdict folder proof in_process closed_loop linearization json plot \
          spectrum fit linear compare summary simulate answer generate export show check variants inspect urdf library machine \
