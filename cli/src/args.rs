@@ -150,6 +150,10 @@ pub struct GenerateArgs {
     /// a group with what it needs [default: the model file's, or the usual ones]
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "models", long_help = functions_help())]
     pub(crate) functions: Option<Vec<String>>,
+    /// Carry the work of friction, motors and the like as one more state, for the balance of energy, unless the model
+    /// file says `count_work = false`
+    #[arg(long)]
+    pub(crate) count_work: bool,
     /// Refuse models with redundant constraint rows instead of dropping the rows with a warning
     #[arg(long)]
     pub(crate) strict: bool,

@@ -8,7 +8,7 @@ pub(crate) mod wasm;
 use crate::args::{CArgs, ExportArgs, Precision, Target};
 use crate::failure::Failure;
 use crate::files;
-use crate::generate::{Asked, modules};
+use crate::generate::{modules, of_solvers};
 use crate::left_out;
 use crate::paths;
 use crate::progress::Spinner;
@@ -37,8 +37,8 @@ const LIBRARY_MARK: &str = "!<arch>\n";
 
 /// Header, source and, if it is asked for, the library.
 fn c(args: &CArgs) -> Result<(), Failure> {
-    let module = module(&args.model, args.functions.as_deref(), args.strict)?;
-    let model = scene::read(&args.model)?;
+    let asked = |model: &mut Model| asked(model, args.functions.as_ref(), args.count_work);
+    let (model, module) = made(&args.model, &asked, args.strict)?;
     left_out::tell(&model, "the exported code");
     paths::refuse(&model, "exported code")?;
     let (page, precision) = (files::shown(&args.model), numbers(args.precision));
@@ -71,14 +71,19 @@ fn c(args: &CArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The module, proved.
-fn module(path: &Path, functions: Option<&[String]>, strict: bool) -> Result<Module, Failure> {
-    let asked = |_: &Path| match functions {
-        Some(names) => Asked::Here(names.to_vec()),
-        None => Asked::ThereOrSolvers,
-    };
-    let made = modules(&[path.to_path_buf()], &asked, strict).pop();
-    made.expect("one model file gives one module")
+/// A model with what is asked for of its module, and the module, proved.
+fn made(path: &Path, asked: &(dyn Fn(&mut Model) + Sync), strict: bool) -> Result<(Model, Module), Failure> {
+    let mut model = scene::read(path)?;
+    asked(&mut model);
+    let made = modules(&[path.to_path_buf()], &|_, model| asked(model), strict).pop();
+    Ok((model, made.expect("one model file gives one module")?))
+}
+
+/// What is asked for of a module by options of C and WebAssembly.
+fn asked(model: &mut Model, functions: Option<&Vec<String>>, count_work: bool) {
+    model.functions = functions.cloned().or(model.functions.take());
+    of_solvers(model);
+    model.counts_work &= count_work;
 }
 
 fn numbers(precision: Precision) -> gyro_export::Precision {

@@ -10,6 +10,7 @@ use crate::words::count;
 use crate::write::{self, Known};
 use crate::{files, folder, progress, remarks, scene};
 use gyro_codegen::Module;
+use gyro_model::Model;
 use gyro_verifier::constants::Constants;
 use similar::TextDiff;
 use std::fmt::Write as _;
@@ -50,8 +51,8 @@ fn outputs(args: &GenerateArgs, places: &[Place]) -> Result<Outputs, Failure> {
     let mut outputs = Outputs::default();
     let mut names = Vec::new();
     let mut sources: Vec<(PathBuf, &PathBuf)> = Vec::new();
-    for (page, made) in pages.iter().zip(modules(&pages, &|page| functions(args, places, page), args.strict))
-    {
+    let asked = |page: &Path, model: &mut Model| asked(args, places, page, model);
+    for (page, made) in pages.iter().zip(modules(&pages, &asked, args.strict)) {
         let module = made?;
         let place = place_of(places, page).filter(|_| args.out.is_none());
         let wished = args.out.as_ref().map(|out| folder::file(out, &format!("{}.rs", module.name)));
@@ -107,40 +108,34 @@ fn data_sheet(module: &Module) -> String {
     text + "\n"
 }
 
-/// Where is said which functions a module has.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Asked {
-    /// Here, by their names.
-    Here(Vec<String>),
-    /// In the model file; the usual ones if it does not say.
-    There,
-    /// In the model file; what solvers call if it does not say.
-    ThereOrSolvers,
-}
-
-/// The model files of this project are read, tested and measured whole.
-fn functions(args: &GenerateArgs, places: &[Place], page: &Path) -> Asked {
-    match &args.functions {
-        Some(names) => Asked::Here(names.clone()),
-        None if place_of(places, page).is_some() => Asked::ThereOrSolvers,
-        None => Asked::There,
+/// What a module of this command has: of a model file elsewhere what is asked for here. Those of this project are read,
+/// tested and measured whole.
+fn asked(args: &GenerateArgs, places: &[Place], page: &Path, model: &mut Model) {
+    if place_of(places, page).is_some() {
+        of_solvers(model);
+    } else {
+        model.counts_work &= args.count_work;
+    }
+    if let Some(names) = &args.functions {
+        model.functions = Some(names.clone());
     }
 }
 
-/// The modules of model files, each proved and with the proof on its data sheet.
-/// With functions that are given here, or else those that a model file asks for.
+/// Has a module have what solvers call, unless its model file says which functions it is to have.
+pub(crate) fn of_solvers(model: &mut Model) {
+    model.functions.get_or_insert_with(|| vec!["solvers".to_owned()]);
+}
+
+/// The modules of model files, each proved and with the proof on its data sheet. Of each model may be changed what the
+/// module is to have: its functions, and whether its state carries the work.
 pub fn modules(
     pages: &[PathBuf],
-    functions: &(dyn Fn(&Path) -> Asked + Sync),
+    asked: &(dyn Fn(&Path, &mut Model) + Sync),
     strict: bool,
 ) -> Vec<Result<Module, Failure>> {
     let module = |page: &PathBuf| {
         let mut model = scene::read(page)?;
-        model.functions = match functions(page) {
-            Asked::Here(names) => Some(names),
-            Asked::There => model.functions,
-            Asked::ThereOrSolvers => model.functions.or_else(|| Some(vec!["solvers".to_owned()])),
-        };
+        asked(page, &mut model);
         remarks::report_redundant(&model, &page.display().to_string(), strict)?;
         let spinner = progress::deriving(&model);
         let module = gyro_codegen::generate_model(&files::shown(page), &model)
@@ -227,7 +222,8 @@ fn mend(args: &GenerateArgs) -> String {
     let models = args.models.iter().map(|m| format!(" {}", m.display()));
     let out = args.out.iter().map(|o| format!(" --out {}", o.display()));
     let functions = args.functions.iter().map(|names| format!(" --functions {}", names.join(",")));
-    format!("{} generate{}", program(), models.chain(out).chain(functions).collect::<String>())
+    let work = args.count_work.then(|| " --count-work".to_owned());
+    format!("{} generate{}", program(), models.chain(out).chain(functions).chain(work).collect::<String>())
 }
 
 /// Lines of a difference that are shown.
@@ -314,7 +310,8 @@ inertia = [1e-4, 1e-4, 2e-4]
     }
 
     fn args(models: &[PathBuf], out: Option<PathBuf>) -> GenerateArgs {
-        GenerateArgs { models: models.to_vec(), check: false, out, functions: None, strict: false }
+        let [check, count_work, strict] = [false; 3];
+        GenerateArgs { models: models.to_vec(), check, out, functions: None, count_work, strict }
     }
 
     fn words(outcome: Result<(), Failure>) -> String {

@@ -71,6 +71,8 @@ fn read_module(places: &[Place], page: &Path) -> Result<(Model, [String; 2]), Fa
         })
     };
     let texts = [read(&path)?, read(&path.with_extension("exact"))?];
+    // As the module was asked for: `generate --count-work`.
+    model.counts_work = texts[0].contains("has_work: true");
     Ok((model, texts))
 }
 

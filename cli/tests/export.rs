@@ -177,3 +177,31 @@ fn laws_and_constraints_in_c_move_as_they_do_here() {
         fs::remove_dir_all(&folder).unwrap();
     }
 }
+
+/// A wheel with friction: only where it is asked for, a third number of the state is the work.
+#[test]
+fn work_is_carried_only_if_asked_for() {
+    let folder = env::temp_dir().join(format!("gyro-work-in-c-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let model = folder.join("wheel.toml");
+    let page = "format = 1\nname = \"wheel\"\n\
+        body = [{ name = \"ground\", fixed = true }, { name = \"wheel\", mass = 1, inertia = [1, 1, 1] }]\n\
+        [[joint]]\nname = \"shaft\"\nkind = \"revolute\"\naxis = [0, 0, 1]\nzero = [1, 0, 0]\ndamping = 0.1\n\
+        first = { body = \"ground\" }\nsecond = { body = \"wheel\" }\n";
+    fs::write(&model, page).unwrap();
+    let gyro = |words: &[&str], more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gyro"));
+        done(command.current_dir(&folder).args(words).arg("wheel.toml").args(more))
+    };
+    for (more, joints, module) in
+        [(&[][..], 2, "has_work: false"), (&["--count-work"][..], 3, "has_work: true")]
+    {
+        gyro(&["export", "c", "--out", "."], more);
+        let header = fs::read_to_string(folder.join("wheel.h")).unwrap();
+        assert!(header.contains(&format!("WHEEL_N_JOINTS = {joints},")), "{more:?}");
+        gyro(&["generate", "--functions", "joint"], more);
+        assert!(fs::read_to_string(folder.join("wheel.rs")).unwrap().contains(module), "{more:?}");
+        gyro(&["verify", "--quick"], &[]);
+    }
+    fs::remove_dir_all(&folder).unwrap();
+}

@@ -250,9 +250,9 @@ def check(gyro, model, integrator, share, values, folder):
 
 
 def follows(gyro, model, folder):
-    """The unit of a model gives the table of `simulate` of all its states and outputs, to 1e-9."""
+    """The unit of a model gives the table of `simulate` of all its states, the work among them, and outputs, to 1e-9."""
     archive = folder / f"{model.stem}.fmu"
-    run(gyro, "export", "fmu", model, "--out", archive)
+    run(gyro, "export", "fmu", model, "--count-work", "--out", archive)
     assert not validate_fmu(str(archive))
     description = fmpy.read_model_description(str(archive))
     end = float(description.defaultExperiment.stopTime)

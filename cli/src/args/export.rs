@@ -50,6 +50,10 @@ pub struct CArgs {
     /// Also compile it, with the C compiler `cc` or that of the variable CC, into a static library libNAME.a
     #[arg(long)]
     pub(crate) library: bool,
+    /// Carry the work of friction, motors and the like as one more state, for the balance of energy, unless the model
+    /// file says `count_work = false`
+    #[arg(long)]
+    pub(crate) count_work: bool,
     /// Refuse models with redundant constraint rows instead of dropping the rows with a warning
     #[arg(long)]
     pub(crate) strict: bool,
@@ -78,6 +82,10 @@ pub struct WasmArgs {
     /// Functions, by their names or by groups, separated by commas [default: the model file's, or what solvers call]
     #[arg(long, value_name = "NAMES", value_delimiter = ',', long_help = super::functions_help())]
     pub(crate) functions: Option<Vec<String>>,
+    /// Carry the work of friction, motors and the like as one more state, for the balance of energy, unless the model
+    /// file says `count_work = false`
+    #[arg(long)]
+    pub(crate) count_work: bool,
     /// Refuse models with redundant constraint rows instead of dropping the rows with a warning
     #[arg(long)]
     pub(crate) strict: bool,
@@ -108,6 +116,10 @@ pub struct FmuArgs {
     /// Sources alone, without a library for this platform
     #[arg(long)]
     pub(crate) sources_only: bool,
+    /// Carry the work of friction, motors and the like as one more state, for the balance of energy, unless the model
+    /// file says `count_work = false`
+    #[arg(long)]
+    pub(crate) count_work: bool,
     /// Refuse models with redundant constraint rows instead of dropping the rows with a warning
     #[arg(long)]
     pub(crate) strict: bool,

@@ -5,7 +5,7 @@ use crate::args::FmuArgs;
 use crate::columns;
 use crate::failure::Failure;
 use crate::folder;
-use crate::generate::{Asked, modules};
+use crate::generate::modules;
 use crate::left_out;
 use crate::paths;
 use crate::progress::Spinner;
@@ -14,6 +14,7 @@ use crate::write::{self, Known};
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use gyro_export::fmu::{Fmu, OPTIONS, Settings, fmu as written};
+use gyro_model::Model;
 use rawzip::time::UtcDateTime;
 use rawzip::{CompressionMethod, ZipArchiveWriter};
 use std::ffi::{OsStr, OsString};
@@ -23,16 +24,13 @@ use std::{env, fs};
 
 /// Writes the archive.
 pub(super) fn fmu(args: &FmuArgs) -> Result<(), Failure> {
-    let model = scene::read(&args.model)?;
+    let mut model = scene::read(&args.model)?;
+    asked(&mut model, args);
     let out = &folder::file(&args.out, &format!("{}.fmu", model.name));
     write::check(out, Known::Record)?;
     left_out::tell(&model, "the exported unit");
     paths::refuse(&model, "an exported unit")?;
-    let mut functions = vec!["solvers".to_owned()];
-    if !model.outputs.is_empty() {
-        functions.extend(["joint_outputs", "output_derivatives"].map(str::to_owned));
-    }
-    let asked = |_: &Path| Asked::Here(functions.clone());
+    let asked = |_: &Path, model: &mut Model| asked(model, args);
     let made = modules(std::slice::from_ref(&args.model), &asked, args.strict).pop();
     let module = made.expect("one model file gives one module")?;
     let method = args.integrator.name();
@@ -56,6 +54,14 @@ pub(super) fn fmu(args: &FmuArgs) -> Result<(), Failure> {
     let is_new = write::write(out, archive, Known::Record)?;
     say(&format!("{} {}", if is_new { "wrote" } else { "fresh already:" }, out.display()));
     Ok(())
+}
+
+/// What is asked for of the module.
+fn asked(model: &mut Model, args: &FmuArgs) {
+    let of_outputs =
+        ["joint_outputs", "output_derivatives"].into_iter().filter(|_| !model.outputs.is_empty());
+    model.functions = Some(["solvers"].into_iter().chain(of_outputs).map(str::to_owned).collect());
+    model.counts_work &= args.count_work;
 }
 
 /// The platform's name in FMI, and what its libraries end with.

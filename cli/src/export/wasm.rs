@@ -1,15 +1,15 @@
 //! A module of WebAssembly, with an ES module around it and its declarations.
 
-use super::{Scratch, module, numbers, prove, say};
+use super::{Scratch, asked, made, numbers, prove, say};
 use crate::args::WasmArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::left_out;
 use crate::paths;
 use crate::progress::Spinner;
-use crate::scene;
 use crate::write::{self, Known};
 use gyro_export::wasm::{MARK, MODULE_MARK, OPTIONS, Wasm, wasm as written};
+use gyro_model::Model;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -17,8 +17,8 @@ use std::{env, fs, io};
 
 /// Writes all three.
 pub(super) fn wasm(args: &WasmArgs) -> Result<(), Failure> {
-    let module = module(&args.model, args.functions.as_deref(), args.strict)?;
-    let model = scene::read(&args.model)?;
+    let asked = |model: &mut Model| asked(model, args.functions.as_ref(), args.count_work);
+    let (model, module) = made(&args.model, &asked, args.strict)?;
     left_out::tell(&model, "the exported code");
     paths::refuse(&model, "exported code")?;
     let page = files::shown(&args.model);

@@ -49,7 +49,7 @@ function onTheDesk(file, times) {
   const name = nameOf(file).replaceAll('-', '_');
   const place = join(folder, name);
   mkdirSync(place, { recursive: true });
-  execFileSync('cargo', ['xtask', 'export', 'c', file, '--out', place], { cwd: ROOT, stdio: ['ignore', 'ignore', 'ignore'] });
+  execFileSync('cargo', ['xtask', 'export', 'c', file, '--count-work', '--out', place], { cwd: ROOT, stdio: ['ignore', 'ignore', 'ignore'] });
   writeFileSync(join(place, 'main.c'), program(name));
   execFileSync(process.env.CC ?? 'cc', ['-std=c99', '-O2', '-ffp-contract=off', 'main.c', `${name}.c`, '-lm', '-o', 'main'], { cwd: place });
   const out = execFileSync(join(place, 'main'), { input: Buffer.from(Float64Array.from(times).buffer), maxBuffer: 1 << 28 });

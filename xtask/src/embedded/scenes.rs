@@ -4,9 +4,10 @@
 use super::folder;
 use gyro_cli::failure::Failure;
 use gyro_cli::files;
-use gyro_cli::generate::{self, Asked};
+use gyro_cli::generate;
 use gyro_cli::places::listing;
 use gyro_cli::programs::io_failure;
+use gyro_model::Model;
 use std::fs;
 use std::path::Path;
 
@@ -15,11 +16,10 @@ use std::path::Path;
 const OF_THE_GALLERY: [(&str, Option<[&str; 2]>); 2] =
     [("gyroscope-combined-offsets.toml", None), ("stabilised-gimbal.toml", Some(["joint", "joint_outputs"]))];
 
-fn asked(page: &Path) -> Asked {
+fn asked(page: &Path, model: &mut Model) {
     let listed = OF_THE_GALLERY.into_iter().find(|(name, _)| page.ends_with(name));
-    match listed.and_then(|(_, functions)| functions) {
-        Some(functions) => Asked::Here(functions.map(str::to_owned).to_vec()),
-        None => Asked::There,
+    if let Some(functions) = listed.and_then(|(_, functions)| functions) {
+        model.functions = Some(functions.map(str::to_owned).to_vec());
     }
 }
 
