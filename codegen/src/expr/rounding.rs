@@ -30,14 +30,13 @@ impl Errors {
         let roots = forms.concat();
         let computed = Computed::of(graph, &roots);
         let mut known = ByExpr::default();
-        let mut slopes = vec![0.0; computed.at.len()];
         for root in roots {
             if !known.contains(root) {
-                known.insert(root, computed.errors(root, &mut slopes));
+                known.insert(root, computed.errors(root));
             }
         }
         let at = |form: &[ExprId], point: usize| form.iter().map(|&root| known[root][point]).collect();
-        let of = |form: &&[ExprId]| Self((0..computed.n_points).map(|point| at(form, point)).collect());
+        let of = |form: &&[ExprId]| Self((0..computed.at.len()).map(|point| at(form, point)).collect());
         forms.iter().map(of).collect()
     }
 
@@ -117,7 +116,8 @@ impl<'g> Step<'g> {
         }
     }
 
-    fn evaluated(&self, graph: &Graph, point: u32, [x, y]: [f64; 2]) -> Evaluated {
+    fn evaluated(&self, graph: &Graph, point: u32, before: &[Evaluated]) -> Evaluated {
+        let [x, y] = self.operands.map(|place| place.map_or(0.0, |place| before[place].value));
         let (value, slopes) = match self.node {
             Node::Constant(_) => (self.constant, [0.0, 0.0]),
             Node::Symbol(symbol) => (graph.domains.value(*symbol, point), [0.0, 0.0]),
@@ -146,9 +146,7 @@ struct Computed<'g> {
     places: ByExpr<usize>,
     /// Operands first.
     steps: Vec<Step<'g>>,
-    n_points: usize,
-    /// Of one step after the other at all points.
-    at: Vec<Evaluated>,
+    at: Vec<Vec<Evaluated>>,
 }
 
 impl<'g> Computed<'g> {
@@ -156,27 +154,26 @@ impl<'g> Computed<'g> {
         let order = graph.reachable(roots);
         let places: ByExpr<usize> = order.iter().enumerate().map(|(place, &id)| (id, place)).collect();
         let steps: Vec<_> = order.iter().map(|&id| Step::of(graph, id, &places)).collect();
-        let points = 0..n_points(steps.len());
-        let n_points = points.len();
-        let mut at: Vec<Evaluated> = Vec::with_capacity(steps.len() * n_points);
-        for step in &steps {
-            for (k, point) in points.clone().enumerate() {
-                let value = |place: Option<usize>| place.map_or(0.0, |place| at[place * n_points + k].value);
-                at.push(step.evaluated(graph, point, step.operands.map(value)));
+        let at = |point| {
+            let mut all = Vec::with_capacity(steps.len());
+            for step in &steps {
+                all.push(step.evaluated(graph, point, &all));
             }
-        }
-        Self { places, steps, n_points, at }
+            all
+        };
+        let at = (0..n_points(steps.len())).map(at).collect();
+        Self { places, steps, at }
     }
 
-    /// The errors of a root at all points. The slopes, as many as there are values, are zero before and after.
-    fn errors(&self, root: ExprId, slopes: &mut [f64]) -> Vec<f64> {
-        let place = self.places[root];
-        let values = &self.at[place * self.n_points..];
-        let error = |(square, at): (f64, &Evaluated)| {
-            let error = square.sqrt();
-            if error.is_finite() { error.max(at.value.abs()) } else { f64::INFINITY }
+    /// The errors of a root, at all points.
+    fn errors(&self, root: ExprId) -> Vec<f64> {
+        let way = self.way(self.places[root]);
+        let mut slopes = vec![0.0; way[0] + 1];
+        let error = |all: &Vec<Evaluated>| {
+            let error = self.mean_square(&way, all, &mut slopes).sqrt();
+            if error.is_finite() { error.max(all[way[0]].value.abs()) } else { f64::INFINITY }
         };
-        self.mean_squares(&self.way(place), slopes).into_iter().zip(values).map(error).collect()
+        self.at.iter().map(error).collect()
     }
 
     /// A place, then those of all that it depends on, backwards.
@@ -195,33 +192,27 @@ impl<'g> Computed<'g> {
         way
     }
 
-    /// The mean squares of the error of the first of these operations, at all points; in `slopes` its derivatives by
-    /// them are made.
-    fn mean_squares(&self, way: &[usize], slopes: &mut [f64]) -> Vec<f64> {
-        let n = self.n_points;
-        slopes[way[0] * n..][..n].fill(1.0);
-        let mut squares = vec![0.0; n];
+    /// The mean square of the error of the first of these operations; in `slopes` its derivatives by them are made.
+    fn mean_square(&self, way: &[usize], all: &[Evaluated], slopes: &mut [f64]) -> f64 {
+        way.iter().for_each(|&place| slopes[place] = 0.0);
+        slopes[way[0]] = 1.0;
+        let mut square = 0.0;
         for &place in way {
-            let step = &self.steps[place];
-            let (before, own) = slopes.split_at_mut(place * n);
-            let all = own.iter_mut().zip(&self.at[place * n..][..n]).zip(&mut squares);
-            for (k, ((own, at), square)) in all.enumerate() {
-                let slope = std::mem::take(own);
-                // What is not taken may be infinite.
-                if slope == 0.0 {
-                    continue;
-                }
-                if !step.is_exact {
-                    *square += (slope * at.value).powi(2);
-                }
-                for (operand, by_operand) in step.operands.into_iter().zip(at.slopes) {
-                    if let Some(operand) = operand {
-                        before[operand * n + k] += slope * by_operand;
-                    }
+            let (step, slope) = (&self.steps[place], slopes[place]);
+            // What is not taken may be infinite.
+            if slope == 0.0 {
+                continue;
+            }
+            if !step.is_exact {
+                square += (slope * all[place].value).powi(2);
+            }
+            for (operand, by_operand) in step.operands.into_iter().zip(all[place].slopes) {
+                if let Some(operand) = operand {
+                    slopes[operand] += slope * by_operand;
                 }
             }
         }
-        squares
+        square
     }
 }
 
