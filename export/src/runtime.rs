@@ -56,10 +56,10 @@ const ELEMENTARY: &[Part] = &[
 /// Whether elementary functions or units mention a name that is more than a word: it may be that of a constant or of a
 /// function there.
 pub(crate) fn mentions(name: &str) -> bool {
-    let texts = ELEMENTARY.iter().map(|part| part.text).chain(crate::fmu::WRAPPER);
+    let mut texts = ELEMENTARY.iter().map(|part| part.text).chain(crate::fmu::WRAPPER);
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let is_in = |text: &str| text.split(|c| !is_name(c)).any(|word| word == name);
-    name.contains(|c: char| !c.is_ascii_alphabetic()) && texts.map(is_in).any(|is_in| is_in)
+    name.contains(|c: char| !c.is_ascii_alphabetic()) && texts.any(is_in)
 }
 
 /// The elementary functions that a text calls, with their notice.

@@ -3,7 +3,7 @@
 
 use crate::program::{FLAGS, of_text, own};
 use gyro_export::{Exported, Precision, c_name};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
@@ -46,7 +46,7 @@ fn written(name: &str, exported: &Exported, what: &str) -> PathBuf {
 }
 
 /// What a compiler says first of a source, if it refuses it; nothing without a compiler.
-fn refused((variable, otherwise): (&str, &str), folder: &PathBuf, options: &[&str]) -> Option<String> {
+fn refused((variable, otherwise): (&str, &str), folder: &Path, options: &[&str]) -> Option<String> {
     let compiler = env::var_os(variable).unwrap_or_else(|| otherwise.into());
     let output = Command::new(compiler).current_dir(folder).arg("-fsyntax-only").args(options).output();
     let Ok(output) = output else {
