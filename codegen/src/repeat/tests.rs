@@ -199,9 +199,9 @@ fn limbs_that_are_alike_are_loops() {
 /// One link carries the next one at its centre of mass.
 #[test]
 fn links_on_both_sides_of_another_are_loops() {
-    let page = page(18, false, None).replacen(
-        "body = \"b8\", point = [0.1, 0.10, -0.2]",
-        "body = \"b8\", point = [0, 0, 0]",
+    let page = page(24, false, None).replacen(
+        "body = \"b11\", point = [0.1, 0.10, -0.2]",
+        "body = \"b11\", point = [0, 0, 0]",
         1,
     );
     assert!(page.contains("[0, 0, 0]"), "{page}");
