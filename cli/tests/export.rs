@@ -82,7 +82,8 @@ fn rows(table: &str) -> Vec<Vec<f64>> {
 /// how many columns there are: coordinates and rates by their names in the header, then all outputs.
 fn difference_in_c(model: &Path, name: &str, folder: &Path) -> (f64, usize) {
     let gyro = || Command::new(env!("CARGO_BIN_EXE_gyro"));
-    done(gyro().args(["export", "c", "-q", "--out"]).arg(folder).arg(model));
+    // With the work, as `simulate` has it: steps are as long as it allows, too.
+    done(gyro().args(["export", "c", "-q", "--count-work", "--out"]).arg(folder).arg(model));
     let text = PROGRAM.replace("NAME", &name.to_uppercase()).replace("name", name);
     fs::write(folder.join("main.c"), text).unwrap();
     let sources = [format!("{name}.c"), "main.c".to_owned()];
