@@ -8,6 +8,7 @@ mod variables;
 
 use crate::names::Names;
 use crate::reserved::c_name;
+use crate::runtime::UNIT;
 use crate::text::Writer as Text;
 use crate::{Error, Precision};
 use gyro_codegen::Scheduled;
@@ -51,16 +52,6 @@ const SOURCES: &str = "sources";
 /// What the sources are to be compiled with, so that the bits are Rust's.
 pub const OPTIONS: &[&str] = &["-std=c99", "-O2", "-ffp-contract=off"];
 
-/// The interface, part for part.
-pub(crate) const WRAPPER: [&str; 7] = [
-    include_str!("../c/fmi/instances.c"),
-    include_str!("../c/fmi/variables.c"),
-    include_str!("../c/fmi/whole_state.c"),
-    include_str!("../c/fmi/derivatives.c"),
-    include_str!("../c/fmi/absent.c"),
-    include_str!("../c/fmi/exchange.c"),
-    include_str!("../c/fmi/cosimulation.c"),
-];
 const HEADERS: [(&str, &str); 3] = [
     ("fmi3PlatformTypes.h", include_str!("../c/fmi/fmi3PlatformTypes.h")),
     ("fmi3FunctionTypes.h", include_str!("../c/fmi/fmi3FunctionTypes.h")),
@@ -153,7 +144,7 @@ impl<'a> Unit<'a> {
             let _ = writeln!(text, "#define FMU_{name} {value}");
         }
         let _ = write!(text, "\ntypedef {} fmu_mechanism;\n\n", names.prefix);
-        text + &names.applied(&WRAPPER.concat())
+        text + &names.applied(&UNIT.concat())
     }
 
     fn description(&self, xml: &mut Xml) -> io::Result<()> {

@@ -56,7 +56,7 @@ const ELEMENTARY: &[Part] = &[
 /// Whether elementary functions or units mention a name that is more than a word: it may be that of a constant or of a
 /// function there.
 pub(crate) fn mentions(name: &str) -> bool {
-    let mut texts = ELEMENTARY.iter().map(|part| part.text).chain(crate::fmu::WRAPPER);
+    let mut texts = ELEMENTARY.iter().map(|part| part.text).chain(UNIT);
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let is_in = |text: &str| text.split(|c| !is_name(c)).any(|word| word == name);
     name.contains(|c: char| !c.is_ascii_alphabetic()) && texts.any(is_in)
@@ -112,6 +112,17 @@ pub(crate) const CONTROL: &[&str] = &[
 
 /// Singular poses of loops; it goes before the steps.
 pub(crate) const POSES: &str = include_str!("../c/solver/poses.c");
+
+/// The interface of units, FMI 3.0.
+pub(crate) const UNIT: [&str; 7] = [
+    include_str!("../c/fmi/instances.c"),
+    include_str!("../c/fmi/variables.c"),
+    include_str!("../c/fmi/whole_state.c"),
+    include_str!("../c/fmi/derivatives.c"),
+    include_str!("../c/fmi/absent.c"),
+    include_str!("../c/fmi/exchange.c"),
+    include_str!("../c/fmi/cosimulation.c"),
+];
 
 /// Curves of tables.
 pub(crate) const SPLINE: &str = include_str!("../c/spline.c");
