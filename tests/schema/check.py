@@ -23,7 +23,7 @@ REFUSED = [
     "misplaced-keys",
     "wrong-types",
     "names",
-    "tables-for-numbers",
+    "tables",
     "point-masses",
     "motions",
 ]
